@@ -31,6 +31,11 @@ impl LimbWords {
         Self::of(joints.filter_map(|it| Some(rig.skeleton.joint(it)?.name.as_str())))
     }
 
+    /// True for one of these words.
+    fn has(name: &str) -> bool {
+        [Self::ARM, Self::LEG].iter().any(|it| [it.base, it.middle, it.end].contains(&name))
+    }
+
     /// Words for a limb with these names of its joints.
     fn of<'a>(names: impl IntoIterator<Item = &'a str>) -> Self {
         const OF_LEGS: [&str; 9] =
@@ -43,10 +48,10 @@ impl LimbWords {
     }
 }
 
-/// The cause of a diagnosis, such as "The limits of elbow keep hand away from its target". A limb's
-/// target is named after its hand.
+/// The cause of a diagnosis, such as "The limits of the elbow keep the hand away from its target". A
+/// limb's target is named after its hand.
 pub fn cause(rig: &SkeletonRig, found: &Diagnosis) -> String {
-    with_names(rig, |names| {
+    sentence(with_names(rig, |names| {
         let target = (names.tip)(found.target);
         match found.cause {
             Cause::OutOfReach { base, distance, shortest, longest, boundary } => {
@@ -124,10 +129,18 @@ pub fn cause(rig: &SkeletonRig, found: &Diagnosis) -> String {
                 format!("{target} is only {percent} % of the way from its FK pose to its target")
             }
         }
-    })
+    }))
 }
 
-/// A remedy as an imperative, such as "Unlock elbow".
+/// Begins a sentence with a capital, unless it begins with the name of a joint.
+fn sentence(text: String) -> String {
+    match text.strip_prefix("the ") {
+        Some(rest) => format!("The {rest}"),
+        None => text,
+    }
+}
+
+/// A remedy as an imperative, such as "Unlock the elbow".
 pub fn remedy(rig: &SkeletonRig, remedy: &Remedy) -> String {
     with_names(rig, |names| {
         let (verb, rest) = verb_and_rest(remedy, names);
@@ -135,7 +148,7 @@ pub fn remedy(rig: &SkeletonRig, remedy: &Remedy) -> String {
     })
 }
 
-/// A remedy that was applied, such as "Unlocked elbow".
+/// A remedy that was applied, such as "Unlocked the elbow".
 pub fn remedy_done(rig: &SkeletonRig, remedy: &Remedy) -> String {
     with_names(rig, |names| {
         let (verb, rest) = verb_and_rest(remedy, names);
@@ -144,8 +157,11 @@ pub fn remedy_done(rig: &SkeletonRig, remedy: &Remedy) -> String {
 }
 
 fn with_names(rig: &SkeletonRig, say: impl FnOnce(Names<'_>) -> String) -> String {
-    let joint =
-        |joint: JointId| rig.skeleton.joint(joint).map_or_else(String::new, |it| it.name.clone());
+    let joint = |joint: JointId| match rig.skeleton.joint(joint).map(|it| it.name.as_str()) {
+        // The hand of the arm is called "hand".
+        Some(name) if LimbWords::has(name) => format!("the {name}"),
+        name => name.unwrap_or_default().to_owned(),
+    };
     let tip = |of: JointId| joint(rig.end_of_target(of).unwrap_or(of));
     let base = |of: JointId, first: JointId| match rig.target(of) {
         Some(index) if rig.targets[index].limb().is_some() => {
@@ -215,11 +231,11 @@ pub fn pop(rig: &SkeletonRig, pop: &RigPop) -> String {
     })
 }
 
-/// A lost target, such as "hand misses its target by 0.2, which it can reach from another pose".
+/// A lost target, such as "The hand misses its target by 0.2, but reaches it from another pose".
 pub fn lost(rig: &SkeletonRig, target: JointId, miss: f32) -> String {
     with_names(rig, |names| {
         let (tip, miss) = ((names.tip)(target), significant(miss));
-        format!("{tip} misses its target by {miss}, but reaches it from another pose")
+        sentence(format!("{tip} misses its target by {miss}, but reaches it from another pose"))
     })
 }
 
@@ -438,13 +454,13 @@ mod tests {
         let found = &rig.diagnose(0.0, &Carried::default())[0];
         assert_eq!(
             cause(&rig, found),
-            "hand cannot reach that far: the target is 3.4 from the shoulder, the bones are 1.7 long"
+            "The hand cannot reach that far: the target is 3.4 from the shoulder, the bones are 1.7 long"
         );
         let remedies: Vec<_> =
             found.remedies.iter().map(|tried| remedy(&rig, &tried.remedy)).collect();
         assert_eq!(
             remedies,
-            ["Move the target of hand within reach", "Let the limb stretch by up to 101 %"]
+            ["Move the target of the hand within reach", "Let the limb stretch by up to 101 %"]
         );
         assert_eq!(remedy_done(&rig, &Remedy::Unlock(found.joints.clone()))[..9], *"Unlocked ");
     }

@@ -283,7 +283,7 @@ mod tests {
             document.camera = document.camera.framing(Vec3::ZERO, 900.0, SIZE.x / SIZE.y);
             let overlays = Overlays { has_handles: true, ..Overlays::default() };
             let scene = Scene::new(&document.at(0.0), &overlays, Theme::Dark);
-            let gap = scene.labels.iter().position(|it| scene.text(it).parse::<f32>().is_ok());
+            let gap = scene.labels.iter().position(|it| scene.text(it).starts_with("gap "));
             let [low, high] = placed(&scene)[gap.expect("the length of the gap")];
             let projection = scene.camera.projection(SIZE.x / SIZE.y);
             let seen = |point: Vec3| {

@@ -25,7 +25,7 @@ pub use parts::Parts;
 
 use egui::{CentralPanel, Panel, Rect, Ui, UiBuilder};
 
-use crate::session::{Actions, SelectAction, Session};
+use crate::session::{Actions, Dialog, SelectAction, Session};
 use panels::crowd;
 
 /// Least height of the view beside an open timeline, in points.
@@ -75,7 +75,8 @@ pub fn show(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Act
     }
     timeline::transport(&mut transport.ui(ui), session, actions);
     status_bar::ui(&mut status.ui(ui), session, actions);
-    if session.preferences().offers_tour && session.tour().is_none() {
+    let is_covered = session.shell().dialog().is_some_and(Dialog::is_modal);
+    if session.preferences().offers_tour && session.tour().is_none() && !is_covered {
         tour::offer(ui, viewport, actions);
     }
     crowd::ui(ui, viewport, session, machine, actions);

@@ -9,6 +9,7 @@ use egui::{
     RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2,
 };
 
+use super::viewport::CORNER_AXES;
 use super::{commands, style, widgets};
 use crate::session::{Actions, Session, TourAction, TourEnd, TourState, TourStep, filled};
 
@@ -16,12 +17,20 @@ use crate::session::{Actions, Session, TourAction, TourEnd, TourState, TourStep,
 const MARGIN: f32 = 16.0;
 
 pub(super) fn offer(ui: &Ui, viewport: Rect, actions: &mut Actions) {
+    /// Width of the card in a wide view, at most.
+    const WIDTH: f32 = 288.0;
+    let frame = Frame::window(ui.style());
+    // In a narrow view the buttons take two rows, so that the corner axes stay in sight.
+    let free = viewport.width() - CORNER_AXES - 2.0 * MARGIN - frame.total_margin().sum().x;
     Area::new(Id::unique("offer of the tour"))
         .order(Order::Middle)
         .pivot(Align2::LEFT_BOTTOM)
         .fixed_pos(viewport.left_bottom() + vec2(MARGIN, -MARGIN))
         .show(ui.ctx(), |ui| {
-            Frame::window(ui.style()).show(ui, |ui| contents(ui, actions));
+            frame.show(ui, |ui| {
+                ui.set_max_width(free.min(WIDTH));
+                contents(ui, actions);
+            });
         });
 }
 
@@ -30,7 +39,7 @@ fn contents(ui: &mut Ui, actions: &mut Actions) {
     ui.label(RichText::new("New to inverse kinematics?").strong());
     ui.label(format!("See how it works, in {steps} short steps."));
     ui.add_space(4.0);
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let take = widgets::primary_button(ui, "Take the tour", None);
         if take.on_hover_text("Begin the tour; your document is kept").clicked() {
             actions.push(TourAction::Enter(0));

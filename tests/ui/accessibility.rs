@@ -155,7 +155,7 @@ fn the_arm_can_be_posed_by_keyboard_alone() {
 #[test]
 fn the_viewport_is_an_image_that_says_how_far_the_arm_reaches() {
     let bench = Bench::after([ArmEdit::SetHand(Vec3::new(0.0, 600.0, 0.0))]);
-    let name = "Viewport. hand cannot reach that far: the target is 600 from the shoulder, the bones are 500 long.";
+    let name = "Viewport. The hand cannot reach that far: the target is 600 from the shoulder, the bones are 500 long.";
     let rect = bench.rect(Role::Image, name);
     // The mouse grabs the panels beside the view at its edges.
     assert_eq!(rect, bench.viewport().shrink(4.0));

@@ -224,12 +224,12 @@ fn the_explain_panel_says_in_a_sentence_how_far_the_arm_reaches() {
         (
             Vec3::new(537.2, 0.0, 0.0),
             Reach::TooFar,
-            "hand cannot reach that far: the target is 537 from the shoulder, the bones are 500 long.",
+            "The hand cannot reach that far: the target is 537 from the shoulder, the bones are 500 long.",
         ),
         (
             Vec3::new(60.0, 0.0, 0.0),
             Reach::TooClose,
-            "hand cannot come that near: the target is 60 from the shoulder, the bones fold to 100.",
+            "The hand cannot come that near: the target is 60 from the shoulder, the bones fold to 100.",
         ),
     ] {
         let bench = Bench::after([ArmEdit::SetHand(hand)]);

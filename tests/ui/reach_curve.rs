@@ -95,7 +95,8 @@ fn a_hand_at_the_minimum_elbow_angle_says_so() {
     let soft_reach = SoftReach::new(0.0, 1.0, core::f32::consts::FRAC_PI_2).expect("soft limits");
     let bench =
         Bench::after([ArmEdit::SetHand(Vec3::X * 300.0), ArmEdit::SetSoftReach(soft_reach)]);
-    let said = "The smallest elbow angle keeps hand away from its target, 300 from the shoulder.";
+    let said =
+        "The smallest elbow angle keeps the hand away from its target, 300 from the shoulder.";
     assert!(bench.says(said));
 }
 
@@ -192,7 +193,7 @@ fn a_cursor_within_reach_is_softened_and_one_beyond_it_too_far() {
         let bench =
             Bench::after([ArmEdit::SetHand(Vec3::X * x), ArmEdit::SetSoftReach(soft_reach)]);
         assert!(bench.says(said), "{x}, {softness}: not {said}");
-        let is_soft = bench.says("The soft limits slow hand down");
+        let is_soft = bench.says("The soft limits slow the hand down");
         assert_eq!(is_soft, said.starts_with("Softened"), "{x}, {softness}");
     }
 }

@@ -257,7 +257,7 @@ fn the_list_of_keys_fits_a_small_window_and_cuts_no_line() {
     for text in [
         "left drag on empty space, middle drag",
         "F2, double-click in the list",
-        "Toggle perspective and orthographic",
+        "Perspective or orthographic",
         "left and right in the timeline",
         "Shift in the graph editor",
     ] {

@@ -177,7 +177,7 @@ impl<'a> CylinderLimb<'a> {
         };
         let length = hand.distance(target);
         let decimals = LengthFormat::of_limb(self.frames.bones()).decimals();
-        scene.add_label(label, format_args!("{}", ShownLength { length, decimals }));
+        scene.add_label(label, format_args!("gap {}", ShownLength { length, decimals }));
     }
 
     /// Adds the names of the joints, clear of the limbs and the Pointer. If the elbow has the label

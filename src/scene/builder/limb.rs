@@ -10,6 +10,9 @@ use crate::rig::{LimbFrames, LimbPart};
 use crate::scene::{Globe, Label, LabelSide, Scene, Solid, SphereShell};
 use crate::session::{Overlays, ShownLimb};
 
+/// Part of the sky in the Pointer's colour, so that it stays behind the limbs.
+const POINTER_FADED: f32 = 0.35;
+
 /// Adds the guides of a limb that the display shows, and the figure that lights up.
 pub(super) fn add_guides(
     scene: &mut Scene,
@@ -43,27 +46,27 @@ pub(super) fn add_circles(scene: &mut Scene, posed: &Posed, selected: Option<Joi
     let document = posed.document();
     let rig = &document.rig;
     let is_of_limb = |joint: JointId| rig.limb_target_of(joint).is_some();
-    let limbs = || rig.targets.iter().filter(|target| target.limb().is_some());
-    let is_alone = limbs().count() == 1;
+    let is_alone = rig.limb_targets().count() == 1;
     if is_alone || selected.is_some_and(is_of_limb) {
         if let Some(limb) = ShownLimb::frames(posed, selected) {
             twist::add_circle(scene, &limb, true);
         }
         return;
     }
-    for limb in limbs().filter_map(|target| posed.limb_frames(target.joint)) {
+    for limb in rig.limb_targets().filter_map(|target| posed.limb_frames(target.joint)) {
         twist::add_circle(scene, &limb, false);
     }
 }
 
 fn add_pointer_and_limits(scene: &mut Scene, limb: &LimbFrames, display: Display) {
-    let colour = scene.palette.guide;
+    let palette = scene.palette;
     if display.shows(Overlay::Pointer) {
         let (transform, shape) = (limb.world(LimbPart::Pointer), limb.pointer());
+        let colour = palette.guide.mixed(palette.sky_bottom, POINTER_FADED);
         scene.guide_solids.push(Solid { transform, shape, colour, winding: None });
         if display.shows(Overlay::Labels) {
             let tip = transform.transform_point3(Vec3::X * shape.length);
-            let label = Label::new(tip, shape.tip_radius, LabelSide::Below, scene.palette.text);
+            let label = Label::new(tip, shape.tip_radius, LabelSide::Below, palette.text);
             scene.add_label(label, format_args!("Pointer"));
         }
     }
@@ -72,6 +75,7 @@ fn add_pointer_and_limits(scene: &mut Scene, limb: &LimbFrames, display: Display
         (Overlay::OuterLimit, LimbPart::OuterLimit, limb.limits.outer),
     ] {
         if display.shows(overlay) && radius > 0.0 {
+            let colour = palette.guide;
             scene.shells.push(SphereShell { centre: limb.origin(part), radius, colour });
         }
     }

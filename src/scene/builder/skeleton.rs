@@ -332,7 +332,7 @@ impl DrawnSkeleton<'_> {
             let label = Label::new(at, radius, LabelSide::Above, colour);
             let label = if has_handles { label.clear_of_handles() } else { label };
             let shown = ShownLength { length: gap, decimals: residual_decimals(self.reach) };
-            scene.add_label(label, format_args!("{shown}"));
+            scene.add_label(label, format_args!("gap {shown}"));
         }
     }
 

@@ -43,7 +43,7 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
     });
     let chosen = chosen.inner;
     actions.extend(chosen.map(|it| ShellAction::OpenDialog(Dialog::Examples(it))));
-    ui.add_space(8.0);
+    let sentence = ui.allocate_exact_size(vec2(pictures_width, SENTENCE), Sense::hover()).0;
     let examples: Vec<Example> = Example::of(group).collect();
     let row = PICTURE.y + TITLE + GAP;
     let rows = ((window.y - FRAME) / row).floor().clamp(1.0, MOST_ROWS) as usize;
@@ -51,7 +51,8 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
     let mut pictures = Pictures::kept(ui);
     pictures.decode_some(ui, &examples);
     let mut pointed = None;
-    let area = ScrollArea::vertical().id_salt(group.title()).max_height(height);
+    let area = ScrollArea::vertical().id_salt(group.title());
+    let area = area.max_height(height).min_scrolled_height(height);
     area.auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing = Vec2::splat(GAP);
         for row in examples.chunks(columns) {
@@ -70,11 +71,15 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
         }
     });
     pictures.keep(ui);
-    let sentence = pointed
+    say(ui, sentence, pointed);
+}
+
+/// Says in `rect` what the example under the mouse is, or what pictures are for.
+fn say(ui: &mut Ui, rect: Rect, example: Option<Example>) {
+    let sentence = example
         .map_or("Point at a picture to see it move, and click it to open the example.", |it| {
             it.sentence
         });
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), SENTENCE), Sense::hover());
     let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
     inside.set_clip_rect(rect.intersect(ui.clip_rect()));
     inside.add_space(4.0);

@@ -32,7 +32,7 @@ pub(in crate::ui) fn ui(
     is_new: bool,
     actions: &mut Actions,
 ) {
-    ui.set_width(460.0);
+    ui.set_width(488.0);
     let path = export.path.to_string_lossy();
     let change = |export: Export| ShellAction::OpenDialog(PathDialog::Export(export).into());
     let ending = ending(ui, export, is_new);

@@ -10,8 +10,8 @@ mod skeleton;
 use std::mem::discriminant;
 
 use egui::{
-    Align2, Color32, Frame, Grid, Id, Modal, Pos2, Rect, Role, Ui, UiBuilder, Vec2, WidgetInfo,
-    Window, pos2, vec2,
+    Align2, Color32, Frame, Grid, Id, Modal, Pos2, Rect, Role, Ui, UiBuilder, WidgetInfo, Window,
+    pos2, vec2,
 };
 
 use super::frame_times::Machine;
@@ -134,15 +134,18 @@ fn modal(ui: &Ui, title: &str, has_close: bool, contents: impl FnOnce(&mut Ui)) 
     let area = Modal::default_area(id).fade_in(false);
     let modal =
         Modal::new(id).area(area).frame(frame).backdrop_color(Color32::from_black_alpha(BACKDROP));
-    let modal = modal.show(ui.ctx(), |ui| {
-        ui.response().widget_info(|| WidgetInfo::labeled(Role::Dialog, true, title));
-        let top = ui.cursor().min;
-        ui.heading(title);
-        ui.add_space(8.0);
-        contents(ui);
-        has_close && close(ui, pos2(ui.min_rect().right(), top.y))
-    });
-    modal.inner
+    modal.show(ui.ctx(), |ui| titled(ui, title, has_close, contents)).inner
+}
+
+/// Shows a title above `contents`, with a cross at its right if `has_close`. Returns whether the cross
+/// was pressed.
+fn titled(ui: &mut Ui, title: &str, has_close: bool, contents: impl FnOnce(&mut Ui)) -> bool {
+    ui.response().widget_info(|| WidgetInfo::labeled(Role::Dialog, true, title));
+    let top = ui.cursor().min;
+    ui.heading(title);
+    ui.add_space(8.0);
+    contents(ui);
+    has_close && close(ui, pos2(ui.min_rect().right(), top.y))
 }
 
 /// Shows `contents` in a window that is not modal, so that everything else stays usable. The window
@@ -154,17 +157,15 @@ fn beside(
     actions: &mut Actions,
     contents: impl FnOnce(&mut Ui),
 ) {
-    let mut open = true;
     let right = ui.ctx().content_rect().right();
-    Window::new(title)
-        .collapsible(false)
+    let window = Window::new(title)
+        .title_bar(false)
         .resizable(false)
         .default_width(statistics::WIDTH)
         .pivot(Align2::RIGHT_TOP)
-        .default_pos(pos2(right - 8.0, viewport.top() + 8.0))
-        .open(&mut open)
-        .show(ui.ctx(), contents);
-    if !open {
+        .default_pos(pos2(right - 8.0, viewport.top() + 8.0));
+    let shown = window.show(ui.ctx(), |ui| titled(ui, title, true, contents));
+    if shown.and_then(|shown| shown.inner) == Some(true) {
         actions.push(ShellAction::CloseDialog);
     }
 }
@@ -186,15 +187,7 @@ fn about(ui: &mut Ui, machine: &Machine) {
 
 /// Shows a cross whose upper right corner is at a point, and returns whether it was pressed.
 fn close(ui: &mut Ui, corner: Pos2) -> bool {
-    const SIZE: Vec2 = vec2(28.0, 24.0);
-    let rect = Rect::from_min_size(corner - vec2(SIZE.x, 0.0), SIZE);
+    let rect = Rect::from_min_size(corner - vec2(IconButton::SIZE.x, 0.0), IconButton::SIZE);
     let mut at = ui.new_child(UiBuilder::new().max_rect(rect));
-    let cross = IconButton {
-        icon: Icon::Close,
-        name: "Close",
-        tooltip: "Close (Esc)",
-        on: None,
-        disabled: None,
-    };
-    cross.show(&mut at)
+    IconButton::new(Icon::Close, "Close", "Close (Esc)", None).show(&mut at)
 }

@@ -27,7 +27,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
                 ("Back", "Ctrl+1"),
                 ("Left", "Ctrl+3"),
                 ("Bottom", "Ctrl+7"),
-                ("Toggle perspective and orthographic", "5"),
+                ("Perspective or orthographic", "5"),
                 ("Frame the selection", "F"),
                 ("Frame all", "Home"),
                 ("Orbit", "arrows"),
@@ -124,14 +124,19 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
             ],
         ),
     ];
-    // Two columns show all shortcuts at once; a window too small for them scrolls.
     let room = ui.ctx().content_rect().size() - vec2(64.0, 96.0);
-    let size = vec2(900.0, 640.0).min(room);
+    // As many columns as fit: three show all shortcuts at once, less scroll.
+    let (width, columns): (f32, &[&[usize]]) = match room.x {
+        1208.0.. => (1208.0, &[&[0, 1, 3], &[2, 4], &[5, 6]]),
+        840.0.. => (840.0, &[&[0, 2, 3, 4], &[1, 5, 6]]),
+        _ => (420.0, &[&[0, 1, 2, 3, 4, 5, 6]]),
+    };
+    let size = vec2(width, 690.0).min(room);
     ui.set_min_size(size);
     ScrollArea::both().max_width(size.x).max_height(size.y).show(ui, |ui| {
         ui.horizontal_top(|ui| {
-            ui.spacing_mut().item_spacing.x = 24.0;
-            for column in [&[0, 2, 3, 4][..], &[1, 5, 6]] {
+            ui.spacing_mut().item_spacing.x = 20.0;
+            for column in columns {
                 ui.vertical(|ui| {
                     ui.spacing_mut().item_spacing.x = 8.0;
                     column.iter().for_each(|group| group_of_keys(ui, groups[*group]));
@@ -143,7 +148,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
 
 fn group_of_keys(ui: &mut Ui, (title, rows): (&str, &[(&str, &str)])) {
     ui.strong(title);
-    let grid = Grid::new(title).num_columns(2).min_col_width(190.0);
+    let grid = Grid::new(title).num_columns(2).min_col_width(178.0);
     grid.min_row_height(18.0).spacing(vec2(8.0, 2.0)).show(ui, |ui| {
         for (what, keys) in rows {
             ui.label(*what);

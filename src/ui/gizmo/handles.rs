@@ -13,6 +13,8 @@ use crate::ui::style;
 const LENGTH: f32 = 80.0;
 /// Distances in points from the centre to the near and the far edges of a square.
 const SQUARE: (f32, f32) = (24.0, 42.0);
+/// Distances in points from the mouse to the centre at which the squares are seen fully and no longer.
+const SQUARES_SEEN: (f32, f32) = (90.0, 130.0);
 /// Maximum distance in points at which the mouse hits an arrow.
 const HIT: f32 = 10.0;
 /// Radius in points, around the centre, of the handle that moves the point freely.
@@ -88,9 +90,10 @@ impl TranslateHandles {
             (None, Some(pointed)) if pointed == handle => bright(colour),
             _ => colour,
         };
+        let squares = self.strength_of_squares(ui, dragged);
         for (axis, colour) in axes.into_iter().enumerate() {
-            if self.square_shows(axis) {
-                let colour = look(PointHandle::Plane(axis), colour);
+            if self.square_shows(axis) && squares > 0.0 {
+                let colour = look(PointHandle::Plane(axis), colour).gamma_multiply(squares);
                 let fill = colour.gamma_multiply(0.35);
                 let corners = self.square(axis).to_vec();
                 painter.add(Shape::convex_polygon(corners, fill, Stroke::new(1.5, colour)));
@@ -107,6 +110,16 @@ impl TranslateHandles {
         if let Some(hand) = self.hand.filter(|hand| hand.distance(self.centre) > FREE_RADIUS) {
             painter.circle_stroke(hand, FREE_RADIUS - 2.0, Stroke::new(1.5, free));
         }
+    }
+
+    /// From 0 to 1: squares are drawn only near the mouse, because they would crowd the point.
+    fn strength_of_squares(&self, ui: &Ui, dragged: Option<PointHandle>) -> f32 {
+        if matches!(dragged, Some(PointHandle::Plane(_))) {
+            return 1.0;
+        }
+        let Some(mouse) = ui.input(|input| input.pointer.latest_pos()) else { return 0.0 };
+        let (full, none) = SQUARES_SEEN;
+        ((none - mouse.distance(self.centre)) / (none - full)).clamp(0.0, 1.0)
     }
 
     fn paint_arrow(&self, painter: &Painter, axis: usize, colour: Color32) {

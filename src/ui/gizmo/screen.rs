@@ -131,7 +131,9 @@ pub(in crate::ui) fn aims(
     let selected = session.selection().active();
     for target in session.rig().targets.iter().filter(|target| target.is_posing()) {
         let Some(point) = target.aim_point_in_world(pose) else { continue };
-        let ends = [pose.base(target.joint), point].map(|end| screen.place(end));
+        // From the middle of a bone: the base of a head is its neck.
+        let middle = pose.base(target.joint).midpoint(pose.tip(target.joint));
+        let ends = [middle, point].map(|end| screen.place(end));
         let [Some(from), Some(to)] = ends else { continue };
         let is_selected = selected == Some(target.joint);
         let weak = ui.visuals().weak_text_color();
@@ -144,12 +146,14 @@ pub(in crate::ui) fn aims(
             let text = painter.layout_no_wrap(text, font, ui.visuals().text_color());
             let half = 0.5 * text.size().y;
             let left = to - vec2(GAP + text.size().x, half);
+            let below = |down: f32| to + vec2(-0.5 * text.size().x, down);
             // On the side that is not the joint's, if there is room.
             let has_room = left.x > painter.clip_rect().left();
             let at = match is_selected {
-                true => to + vec2(-0.5 * text.size().x, BELOW_HANDLES),
-                false if to.x < from.x && has_room => left,
-                false => to + vec2(GAP, -half),
+                true => below(BELOW_HANDLES),
+                false if to.x >= from.x => to + vec2(GAP, -half),
+                false if has_room => left,
+                false => below(GAP),
             };
             painter.galley(at, text, ui.visuals().text_color());
         }

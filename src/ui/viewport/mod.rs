@@ -21,6 +21,7 @@ use crate::session::{
     Action, Actions, CameraMotion, Drag, DragInput, Grip, JointEdit, PlaybackAction, PointHandle,
     SelectAction, Session, SkinEdit, TransactionAction, ViewAction,
 };
+pub(in crate::ui) use navigation::CORNER_AXES;
 use navigation::{covers_view_axes, motion, show_cursor, two_fingers, view_axes, wheel};
 
 /// Width in points of the strip at each edge of the view in which the mouse grabs the panel beside

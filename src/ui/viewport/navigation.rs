@@ -136,6 +136,8 @@ pub(super) fn show_cursor(ui: &Ui, session: &Session, grip: Option<Grip>) {
 const RADIUS: f32 = 38.0;
 const END: f32 = 9.0;
 const MARGIN: f32 = 16.0;
+/// Width in points of the view axes, with their distance from the edge of the view.
+pub(in crate::ui) const CORNER_AXES: f32 = 2.0 * (RADIUS + END) + MARGIN;
 
 struct AxisEnd {
     view: AxisView,

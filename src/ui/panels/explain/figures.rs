@@ -108,7 +108,7 @@ pub(super) fn beside(from: Pos2, to: Pos2) -> Vec<Place> {
     const GAP: f32 = 6.0;
     let along = (to - from).normalized();
     let away = vec2(along.y, -along.x);
-    let parts = [0.5, 0.35, 0.65, 0.2, 0.8];
+    let parts = [0.5, 0.35, 0.65, 0.2, 0.8, 0.05, 0.95];
     parts.map(|part| Place { at: from + (to - from) * part + away * GAP, away }).to_vec()
 }
 

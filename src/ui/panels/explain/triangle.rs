@@ -214,7 +214,9 @@ impl TriangleDrawing {
         let Self { shoulder, elbow, hand, foot, .. } = *self;
         let sides = [[shoulder, elbow], [elbow, hand], [shoulder, hand], [elbow, foot]];
         let ends = self.compass().map(|points| [points[0], points[points.len() - 1]]);
-        [sides.as_slice(), &ends].concat()
+        let arc = self.elbow_arc();
+        let chords: Vec<_> = arc.windows(2).map(|ends| [ends[0], ends[1]]).collect();
+        [sides.as_slice(), &ends, &chords].concat()
     }
 }
 
