@@ -67,7 +67,7 @@ picture_of_example() {
         return
     fi
     for nth in {10..33}; do
-        time=$(awk "BEGIN { print (${#all[@]} - 1) / 30 * ($nth - 10) / 24 }")
+        time=$(awk "BEGIN { print (${#all[@]} - 1) / 30 * (($nth - 10 + $(first "$name")) % 24) / 24 }")
         come_closer "$name" "$file" "$time" >"$frames/closer.json"
         "$program" render "$frames/closer.json" --time "$time" --size 576x360 -o "$frames/$nth.png"
     done
@@ -76,20 +76,31 @@ picture_of_example() {
     rm -r "$frames"
 }
 
+# first NAME: the frame of 24 that is shown first, and while the picture does not play.
+first() {
+    case $1 in
+        looking-at-the-hand | reaching-down) echo 7 ;; # the figure just stands before
+        *) echo 0 ;;
+    esac
+}
+
 # come_closer NAME FILE TIME: prints the document with a nearer camera if its own makes the figure tiny
-# in so small a picture; that of the walk goes along.
+# in so small a picture; that of the walk goes along, and one looks at what is above the waist.
 come_closer() {
-    local part=1 speed=0
+    local part=1 up=0 speed=0
     case $1 in
         walk) part=0.6 speed=1.41 ;; # metres in a second, past the middle of its way after one
-        tadpoles) part=0.8 ;;
+        tadpoles | snake) part=0.8 ;;
+        reaching-down) part=0.85 ;;
+        looking-at-the-hand) part=0.6 up=0.3 ;;
     esac
-    python3 - "$2" "$3" "$part" "$speed" <<'END'
+    python3 - "$2" "$3" "$part" "$up" "$speed" <<'END'
 import json, sys
 document = json.load(open(sys.argv[1]))
-time, part, speed = map(float, sys.argv[2:])
+time, part, up, speed = map(float, sys.argv[2:])
 if camera := document.get("camera"):
     camera["distance"] *= part
+    camera["target"][1] += up
     camera["target"][2] += speed * (time - 1)
 json.dump(document, sys.stdout)
 END

@@ -60,7 +60,7 @@ impl ExampleGroup {
     pub fn title(self) -> &'static str {
         match self {
             Self::Basics => "Basics",
-            Self::WhyNot => "Why not?",
+            Self::WhyNot => "Why not reached",
             Self::InsideSolver => "Inside a solver",
             Self::HardCases => "Hard cases",
         }
@@ -76,7 +76,7 @@ impl Example {
     /// All examples, in the order in which they are listed.
     pub const ALL: [Self; 35] = examples! {
         Basics in "" {
-            "arm", "Arm" => "The arm of the paper, two limbs in closed form.";
+            "arm", "Arm" => "Two limbs and a hand: drag the hand, and a formula finds the elbow.";
             "two-targets", "Two targets on a Y" =>
                 "A tree with two branches, each with a target of its own.";
             "human", "Human" =>

@@ -141,11 +141,18 @@ pub struct OnionSkin {
     pub skin: Option<Shared<SkinPose>>,
     /// True if the frame is before the playhead.
     pub past: bool,
+    /// Number of frames from the playhead.
+    pub frames: u32,
     /// Opacity: 1 nearest to the playhead, less farther away.
     pub opacity: f32,
 }
 
 impl OnionSkin {
+    /// True for those next to the playhead, one on each side.
+    pub fn is_nearest(&self) -> bool {
+        self.opacity == 1.0
+    }
+
     fn write_skin(&mut self, posed: &Posed) {
         let Document { rig, display, .. } = posed.document();
         let skin = rig.skin.as_ref().filter(|_| display.shows(Overlay::Skin));
@@ -187,7 +194,9 @@ pub(in crate::session) fn write_onion_skins(
         let skin = &mut skins[made];
         posed.skeleton().write_pose(&mut skin.pose);
         skin.write_skin(&posed);
-        (skin.past, skin.opacity) = (place < 0, 1.0 / place.unsigned_abs() as f32);
+        let nth = place.unsigned_abs();
+        (skin.past, skin.opacity) = (place < 0, 1.0 / nth as f32);
+        skin.frames = FRAMES as u32 * nth as u32;
         made += 1;
     }
     skins.truncate(made);

@@ -219,21 +219,13 @@ impl Session {
         self.evaluated.limb()
     }
 
-    /// True if the limb that pages are about is that of the selection: no joint is selected, or one of
-    /// a limb.
-    pub fn shows_limb_of_selection(&self) -> bool {
-        let is_of_limb = |joint| self.rig().limb_target_of(joint).is_some();
-        self.selection().active().is_none_or(is_of_limb)
-    }
-
     /// The limb of a figure that the open page is about.
     pub fn limb_of_page(&self) -> Option<&ShownLimb> {
         let preferences = self.preferences();
         let is_about_limb =
             matches!(preferences.tab, PanelTab::Triangle | PanelTab::Twist | PanelTab::Reach);
         let is_figure = self.rig().sole_limb().is_none();
-        let is_shown = preferences.explain && is_about_limb && self.shows_limb_of_selection();
-        self.limb().filter(|_| is_figure && is_shown)
+        self.limb().filter(|_| is_figure && is_about_limb && preferences.explain)
     }
 
     /// The pose of the skeleton at the playhead, in world space.

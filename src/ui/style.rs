@@ -1,6 +1,8 @@
 //! Colours, spacing and fonts of the panels. The accent colour is that of the scene's palette.
 
-use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Visuals, vec2};
+use egui::{
+    Color32, Context, CornerRadius, FontFamily, FontId, Shadow, Stroke, TextStyle, Visuals, vec2,
+};
 
 use crate::document::Theme;
 use crate::render::system_fonts;
@@ -130,6 +132,15 @@ fn visuals(theme: Theme) -> Visuals {
     visuals.weak_text_color = Some(tones.weak);
     visuals.hyperlink_color = accent;
     visuals.error_fg_color = tones.error;
+    // Straight below, as of a soft light from above.
+    let shadow = |offset: i8, blur: u8, dark: u8, light: u8| Shadow {
+        offset: [0, offset],
+        blur,
+        spread: 0,
+        color: Color32::from_black_alpha(if theme == Theme::Dark { dark } else { light }),
+    };
+    visuals.window_shadow = shadow(4, 16, 110, 36);
+    visuals.popup_shadow = shadow(2, 8, 90, 30);
     visuals.window_stroke = Stroke::new(1.0, tones.line);
     visuals.window_corner_radius = CornerRadius::same(8);
     visuals.menu_corner_radius = CornerRadius::same(6);

@@ -287,8 +287,8 @@ fn nothing_covers_the_title_of_the_socket_twist_with_any_reference() {
             let title = title.with_max_x(title.left() + 100.0);
             let choice = bench.rect(Role::ComboBox, "Twist reference");
             assert!(!title.intersects(choice), "{kind:?}: {title:?} {choice:?}");
-            if bench.shows(Role::Label, "reference") {
-                let label = bench.rect(Role::Label, "reference");
+            if bench.shows(Role::Label, "from") {
+                let label = bench.rect(Role::Label, "from");
                 assert!(
                     !title.intersects(label) && !label.intersects(choice),
                     "{kind:?}: {label:?}"

@@ -13,7 +13,7 @@ use crate::kinematics::skeleton::{Balance, Joint, JointId, Skeleton, SkeletonPos
 use crate::kinematics::skin::Skinning;
 use crate::rig::TargetReport;
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, SkinInstance};
-use crate::session::{Overlays, ShownRegion};
+use crate::session::{OnionSkin, Overlays, ShownRegion};
 
 /// Number of lines of a drawn path, if its head has fewer keys.
 const LINES: usize = 2048;
@@ -125,6 +125,9 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
                 drawn.posed(&onion_skin.pose).add_onion_skin(scene, colour);
             }
         }
+        if display.shows(Overlay::Labels) && onion_skin.is_nearest() {
+            add_name_of(scene, onion_skin, drawn.pose);
+        }
     }
     let all = display.shows(Overlay::FkPose);
     if all || rig.targets.iter().any(Target::is_blended) {
@@ -214,6 +217,23 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, children: &mut V
             children[parent.index()] += 1;
         }
     }
+}
+
+/// Says above an onion skin which frame it is, on its side away from the pose `now`.
+fn add_name_of(scene: &mut Scene, onion_skin: &OnionSkin, now: &SkeletonPose) {
+    let [there, here] = [&onion_skin.pose, now].map(|pose| {
+        let tips = pose.ids().map(|joint| pose.tip(joint));
+        tips.max_by(|one, other| one.y.total_cmp(&other.y))
+    });
+    let (Some(there), Some(here)) = (there, here) else { return };
+    let is_left = (there - here).dot(scene.camera.projection(1.0).right) < 0.0;
+    let side = if is_left { LabelSide::AboveLeft } else { LabelSide::Above };
+    let (colour, which) = match onion_skin.past {
+        true => (scene.palette.text, "before"),
+        false => (scene.palette.accent, "after"),
+    };
+    let label = Label::new(there, 0.0, side, colour);
+    scene.add_label(label, format_args!("{} frames {which}", onion_skin.frames));
 }
 
 /// Sets `hands` to the hand that each joint belongs to: below a joint with three or more children, if

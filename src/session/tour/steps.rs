@@ -470,6 +470,6 @@ static END: TourEnd = TourEnd {
         "Nearly straight, the elbow races. Softness calms it; the hand then stays a little short.",
         "FK swings along arcs, IK keeps places. Long chains need solvers, which iterate.",
     ],
-    next: "Go on with *Examples → Inside a solver*, *Examples → Why not?*, *Help → Glossary*, and \
+    next: "Go on with *Examples → Inside a solver*, *Examples → Why not reached*, *Help → Glossary*, and \
         docs/guide.md. *Finish* puts your own document back.",
 };

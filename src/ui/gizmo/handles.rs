@@ -5,7 +5,7 @@ use core::f32::consts::TAU;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Shape, Stroke, Ui, Vec2};
 use glam::Vec3;
 
-use super::screen::{ScreenProjection, bright, to_segment};
+use super::screen::{ScreenProjection, bright, circle, to_segment};
 use crate::session::{Grip, GripRing, PointHandle};
 use crate::ui::style;
 
@@ -106,9 +106,9 @@ impl TranslateHandles {
         }
         let ring = ui.visuals().strong_text_color();
         let free = look(PointHandle::Free, ring.gamma_multiply(0.85));
-        painter.circle_stroke(self.centre, FREE_RADIUS - 2.0, Stroke::new(1.5, free));
+        circle(painter, ui, self.centre, FREE_RADIUS - 2.0, Stroke::new(1.5, free));
         if let Some(hand) = self.hand.filter(|hand| hand.distance(self.centre) > FREE_RADIUS) {
-            painter.circle_stroke(hand, FREE_RADIUS - 2.0, Stroke::new(1.5, free));
+            circle(painter, ui, hand, FREE_RADIUS - 2.0, Stroke::new(1.5, free));
         }
     }
 

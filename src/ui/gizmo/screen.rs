@@ -58,6 +58,13 @@ pub(in crate::ui) fn bright(colour: Color32) -> Color32 {
     colour.lerp_to_gamma(Color32::WHITE, 0.35)
 }
 
+/// Draws a circle that is also seen on a body of its own colour: on a halo of the sky's.
+pub(in crate::ui) fn circle(painter: &Painter, ui: &Ui, at: Pos2, radius: f32, stroke: Stroke) {
+    let halo = style::colour(style::palette(ui).sky_bottom).gamma_multiply(0.55);
+    painter.circle_stroke(at, radius, Stroke::new(stroke.width + 2.0, halo));
+    painter.circle_stroke(at, radius, stroke);
+}
+
 /// Distance in points from a screen position to a line segment; infinite if an end of the segment
 /// is not finite, as behind the eye.
 pub(in crate::ui) fn to_segment(at: Pos2, from: Pos2, to: Pos2) -> f32 {

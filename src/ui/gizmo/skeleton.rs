@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::handles::{OUTER_RADIUS, RADIUS, RotateRing, TranslateHandles};
 use super::limit_marks::LimitMarks;
-use super::screen::{ScreenProjection, bright, to_segment};
+use super::screen::{ScreenProjection, bright, circle, to_segment};
 use super::twist_ring::TwistRing;
 use crate::document::Target;
 use crate::kinematics::skeleton::{Joint, JointId, RotationAxis};
@@ -159,7 +159,7 @@ impl Gizmo {
         let strong = ui.visuals().strong_text_color();
         for mark in &self.marks {
             let colour = if mark.enabled { strong } else { strong.gamma_multiply(0.4) };
-            painter.circle_stroke(mark.at, TARGET, Stroke::new(1.5, faded(mark.grip, colour)));
+            circle(painter, ui, mark.at, TARGET, Stroke::new(1.5, faded(mark.grip, colour)));
         }
         for (joint, bone) in self.bones.iter().enumerate() {
             let grip = Grip::Tip(JointId::new(joint), PointHandle::Free);

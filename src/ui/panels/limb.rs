@@ -410,7 +410,7 @@ fn socket_twist(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
 fn reference(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     /// Width in points of the section's title with its triangle.
     const TITLE: f32 = 104.0;
-    const LABEL: &str = "reference";
+    const LABEL: &str = "from";
     let chosen = limb.settings.reference;
     let spacing = ui.spacing();
     let around = 2.0 * (spacing.button_padding.x + spacing.item_spacing.x);

@@ -25,7 +25,7 @@ pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         let note = skeleton::noted(session);
         let room = ui.available_height() - note.map_or(0.0, |_| skeleton::note_height(height));
         let rows = ScrollArea::vertical().auto_shrink(false).max_height(room);
-        rows.show(ui, |ui| properties(ui, session, actions));
+        rows.show(ui, |ui| widgets::whole_rows(ui, |ui| properties(ui, session, actions)));
         if let Some(target) = note {
             skeleton::note(ui, session, &target, actions);
         }
@@ -124,23 +124,34 @@ pub(super) fn right(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Op
     // Each page is scrolled on its own.
     let mut figure = None;
     ScrollArea::vertical().id_salt(shown).auto_shrink(false).show(ui, |ui| {
-        match shown {
-            PanelTab::Triangle => figure = explain::triangle(ui, session, actions),
-            PanelTab::Twist => explain::twist(ui, session, actions),
-            PanelTab::Reach => explain::reach(ui, session, actions),
-            PanelTab::Pops => explain::pops(ui, session, actions),
-            PanelTab::Solver => {
-                if session.rig().sole_limb().is_some() {
-                    explain::closed_form(ui, session);
-                    ui.separator();
-                }
-                solver::solver(ui, session, actions);
-            }
-            PanelTab::Race => solver::race(ui, session, actions),
-            PanelTab::Skin => skeleton::skin_areas(ui, session),
-        }
-        ui.add_space(8.0);
+        figure = widgets::whole_rows(ui, |ui| page(ui, session, shown, actions));
     });
+    figure
+}
+
+fn page(
+    ui: &mut Ui,
+    session: &Session,
+    shown: PanelTab,
+    actions: &mut Actions,
+) -> Option<LimbFigure> {
+    let mut figure = None;
+    match shown {
+        PanelTab::Triangle => figure = explain::triangle(ui, session, actions),
+        PanelTab::Twist => explain::twist(ui, session, actions),
+        PanelTab::Reach => explain::reach(ui, session, actions),
+        PanelTab::Pops => explain::pops(ui, session, actions),
+        PanelTab::Solver => {
+            if session.rig().sole_limb().is_some() {
+                explain::closed_form(ui, session);
+                ui.separator();
+            }
+            solver::solver(ui, session, actions);
+        }
+        PanelTab::Race => solver::race(ui, session, actions),
+        PanelTab::Skin => skeleton::skin_areas(ui, session),
+    }
+    ui.add_space(8.0);
     figure
 }
 

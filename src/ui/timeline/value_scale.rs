@@ -261,7 +261,8 @@ pub(in crate::ui::timeline) fn axes(
         };
         let (name, unit) = kind.unit(metres_per_unit);
         let top = Align2([align, egui::Align::Min]);
-        write(pos2(x, plot.top() + 2.0), top, unit.to_owned(), colours.0);
+        let unit_font = TextStyle::Body.resolve(ui.style());
+        ui.painter().text(pos2(x, plot.top() + 2.0), top, unit, unit_font, colours.0);
         let marks = marks(scales.range(kind), plot.height());
         for mark in marks.values() {
             let y = scales.y(kind, mark, plot.y_range());

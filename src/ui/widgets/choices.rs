@@ -92,12 +92,15 @@ pub(in crate::ui) struct Choice<'a> {
 pub(in crate::ui) struct ChoiceList<'a>(&'a mut Ui);
 
 impl Choice<'_> {
+    /// Width in points at most: enough for most texts, so that lists below each other are aligned.
+    const WIDTH: f32 = 168.0;
+
     /// Shows the list; `items` adds its items while it is open.
     pub fn show(&self, ui: &mut Ui, items: impl FnOnce(&mut ChoiceList<'_>)) {
         widgets::pair(ui, self.label, |ui| {
             let combo = ComboBox::from_id_salt(self.name)
                 .selected_text(self.shown)
-                .width(ui.available_width().min(150.0))
+                .width(ui.available_width().min(Self::WIDTH))
                 .truncate();
             let response = combo.show_ui(ui, |ui| items(&mut ChoiceList(ui))).response;
             name(ui, &response, self.name);

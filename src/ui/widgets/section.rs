@@ -138,6 +138,37 @@ fn cut(ui: &Ui, title: &str) -> WidgetText {
     ui.fonts_mut(|fonts| fonts.layout_job(job)).into()
 }
 
+/// Shows the contents of a scrolled area without the row that its lower edge cuts. Larger things, such
+/// as drawings, are hidden while only a sliver of them is seen.
+pub(in crate::ui) fn whole_rows<T>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> T) -> T {
+    /// Greatest height of what is hidden, in points: more than a row.
+    const MOST: f32 = 30.0;
+    let id = ui.scope_id().with("cut row");
+    let before: f32 = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let clip = ui.clip_rect();
+    ui.set_clip_rect(clip.with_max_y(clip.bottom() - before));
+    let shown = contents(ui);
+    let layer = ui.layer_id();
+    let cut = ui.ctx().viewport(|viewport| {
+        let rects = || viewport.this_pass.widgets.get_layer(layer).map(|widget| widget.rect);
+        let is_cut = |rect: &Rect| {
+            clip.x_range().contains(rect.center().x)
+                && (clip.bottom() - MOST..clip.bottom()).contains(&rect.top())
+                && rect.bottom() > clip.bottom() + 1.0
+        };
+        // What holds a whole row is not a row.
+        let is_row =
+            |rect: &Rect| !rects().any(|it| it.bottom() <= clip.bottom() && rect.contains_rect(it));
+        let tops = rects().filter(is_cut).filter(is_row).map(|rect| clip.bottom() - rect.top());
+        tops.fold(0.0, f32::max)
+    });
+    if cut != before {
+        ui.data_mut(|data| data.insert_temp(id, cut));
+        ui.request_repaint();
+    }
+    shown
+}
+
 /// Lays out `contents` from left to right, so that they end at the right edge.
 ///
 /// A layout from right to left would add the last widget first, and Tab would go backwards.

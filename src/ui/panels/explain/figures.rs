@@ -199,7 +199,10 @@ impl<'a> FigureLabels<'a> {
         };
         self.room.contains_rect(rect)
             && !self.lines.iter().any(is_crossed)
-            && !self.written.iter().any(|(other, _)| other.expand2(vec2(6.0, 0.0)).intersects(rect))
+            && !self
+                .written
+                .iter()
+                .any(|(other, _)| other.expand2(vec2(12.0, 0.0)).intersects(rect))
     }
 }
 

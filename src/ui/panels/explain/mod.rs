@@ -88,7 +88,7 @@ fn titled_limb<'a>(
     match limb {
         Some(limb) if session.rig().sole_limb().is_none() => {
             choose_limb(ui, session, limb, actions);
-            return limb_of_selection(ui, session, actions).then_some(limb);
+            why_this_limb(ui, session, limb);
         }
         Some(_) => {}
         None => {
@@ -103,14 +103,13 @@ fn titled_limb<'a>(
 /// Shows a list of a figure's limbs. Choosing one selects its end.
 fn choose_limb(ui: &mut Ui, session: &Session, limb: &ShownLimb, actions: &mut Actions) {
     let rig = session.rig();
-    let shown =
-        if session.shows_limb_of_selection() { name(session, limb) } else { "–".to_owned() };
+    let shown = name(session, limb);
     let tooltip = "Choose the limb that this page is about; selecting one of its joints does, too";
     let choice = Choice { label: "Limb of", name: "Limb", tooltip, shown: &shown };
     choice.show(ui, |list| {
         for target in rig.limb_targets() {
             let end = rig.end_of(target);
-            let is_shown = session.shows_limb_of_selection() && target.joint == limb.target;
+            let is_shown = target.joint == limb.target;
             if list.item(is_shown, &rig.skeleton[end].name, "", None) {
                 actions.push(SelectAction::Joints(vec![end]));
             }
@@ -119,35 +118,28 @@ fn choose_limb(ui: &mut Ui, session: &Session, limb: &ShownLimb, actions: &mut A
     ui.add_space(4.0);
 }
 
-/// Says why a limb of a figure is shown, or that the selected joint is in none, with a button for each
-/// limb. Returns whether a limb is shown.
-fn limb_of_selection(ui: &mut Ui, session: &Session, actions: &mut Actions) -> bool {
-    if session.shows_limb_of_selection() {
-        let why = match session.selection().active() {
-            None => {
-                "Its bones are coloured in the view. Select a joint of another limb to see that one."
-            }
-            Some(_) => "The limb of the selected joint; its bones are coloured in the view.",
-        };
-        ui.label(RichText::new(why).weak());
-        ui.add_space(4.0);
-        return true;
-    }
-    let joint = session.selection().active().and_then(|it| session.skeleton().joint(it));
-    let name = joint.map_or("–", |joint| joint.name.as_str());
-    ui.label(format!("{name} is in no limb. See one:"));
-    ui.add_space(4.0);
-    let rig = session.rig();
-    ui.horizontal_wrapped(|ui| {
-        for target in rig.limb_targets() {
-            let end = rig.end_of(target);
-            let tooltip = "Select the end of this limb";
-            if widgets::button(ui, &rig.skeleton[end].name, tooltip, None) {
-                actions.push(SelectAction::Joints(vec![end]));
-            }
+/// Says why this limb of a figure is shown.
+fn why_this_limb(ui: &mut Ui, session: &Session, limb: &ShownLimb) {
+    let (rig, selected) = (session.rig(), session.selection().active());
+    let outside = selected.filter(|joint| rig.limb_target_of(*joint).is_none());
+    let why = match outside.and_then(|joint| rig.skeleton.joint(joint)) {
+        Some(joint) => {
+            let shown = name(session, limb);
+            format!(
+                "{} is in no limb, so this is that of {shown}, coloured in the view.",
+                joint.name
+            )
         }
-    });
-    false
+        None if selected.is_some() => {
+            "The limb of the selected joint; its bones are coloured in the view.".to_owned()
+        }
+        None => {
+            "Its bones are coloured in the view. Select a joint of another limb to see that one."
+                .to_owned()
+        }
+    };
+    ui.weak(why);
+    ui.add_space(4.0);
 }
 
 /// The name of what a limb's target moves.

@@ -16,7 +16,7 @@ use crate::session::{LimbFigure, ShownLimb};
 use crate::ui::style;
 use crate::words::LimbWords;
 
-const HEIGHT: f32 = 184.0;
+const HEIGHT: f32 = 164.0;
 /// Room for labels at the sides, and above and below.
 const MARGINS: Vec2 = vec2(44.0, 34.0);
 /// Radius of the arcs of the angles, in points.

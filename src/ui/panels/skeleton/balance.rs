@@ -23,17 +23,14 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
     let report = session.posed().evaluated_skeleton().balance.as_ref();
     let mut is_on = rig.balance.is_some();
-    widgets::pair(ui, "", |ui| {
-        if let Some(report) = report {
-            distance(ui, session, report);
+    ui.horizontal(|ui| {
+        let tooltip = "Move the body so that its centre of mass is over the feet or a point";
+        if ui.checkbox(&mut is_on, "Keep balance").on_hover_text(tooltip).changed() {
+            actions.push(SolverEdit::SetBalance(is_on.then(BalanceTarget::default)));
         }
-        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            let tooltip = "Move the body so that its centre of mass is over the feet or a point";
-            let check = ui.checkbox(&mut is_on, "Keep balance").on_hover_text(tooltip);
-            if check.changed() {
-                actions.push(SolverEdit::SetBalance(is_on.then(BalanceTarget::default)));
-            }
-        });
+        if let Some(report) = report {
+            widgets::at_right(ui, |ui| distance(ui, session, report));
+        }
     });
     let Some(balance) = rig.balance else { return };
     if let Some(error) = report.and_then(|report| report.refused.as_ref()) {

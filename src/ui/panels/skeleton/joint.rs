@@ -43,11 +43,16 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
     if let Some(target) = session.rig().target_that_turns(index)
         && let Some((_, end)) = targets::end(session.rig(), target)
     {
-        let how =
-            if target.influence < 1.0 { "poses this joint in part" } else { "poses this joint" };
-        ui.weak(format!("The target of {end} {how}. The angles are those without it (FK)."));
+        let how = match target.influence < 1.0 {
+            true => "poses this joint in part; the rest is these angles (FK).",
+            false => "poses this joint; these angles (FK) count only without it.",
+        };
+        ui.weak(format!("The target of {end} {how}"));
     } else if session.rig().is_pulled(index) {
-        ui.weak("Follows hands and feet where they cannot reach. The angles are those without them (FK).");
+        ui.weak(
+            "Follows hands and feet where they cannot reach; these angles (FK) count only without \
+             them.",
+        );
     }
     for axis in RotationAxis::ALL {
         let label = axis.name();

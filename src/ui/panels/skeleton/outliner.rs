@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use egui::collapsing_header::{CollapsingState, paint_default_icon};
 use egui::{
     Align2, Color32, Frame, Key, Margin, Painter, Panel, Pos2, Rect, Response, RichText, Role,
-    ScrollArea, Sense, TextEdit, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    ScrollArea, Sense, Stroke, TextEdit, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
 use crate::kinematics::skeleton::JointId;
@@ -274,6 +274,10 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow, folds: &mut Folds) ->
     }
     let visuals = ui.visuals();
     let painter = ui.painter();
+    for depth in 0..row.depth.min(12) {
+        let x = rect.left() + 0.5 * TRIANGLE + INDENT * depth as f32;
+        painter.vline(x, rect.y_range(), visuals.widgets.noninteractive.bg_stroke);
+    }
     if selected {
         painter.rect_filled(rect, 4.0, visuals.selection.bg_fill);
     } else if response.hovered() || session.selection().hovered() == Some(row.joint) {
@@ -281,11 +285,8 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow, folds: &mut Folds) ->
     }
     if response.has_focus() {
         let inside = rect.shrink(1.0);
-        painter.rect_stroke(inside, 4.0, visuals.selection.stroke, egui::StrokeKind::Inside);
-    }
-    for depth in 0..row.depth.min(12) {
-        let x = rect.left() + 0.5 * TRIANGLE + INDENT * depth as f32;
-        painter.vline(x, rect.y_range(), visuals.widgets.noninteractive.bg_stroke);
+        let stroke = Stroke::new(1.0, style::accent(ui));
+        painter.rect_stroke(inside, 4.0, stroke, egui::StrokeKind::Inside);
     }
     if let Some((triangle, is_folded)) = triangle {
         widgets::fold_mark(painter, triangle.center(), is_folded, visuals.weak_text_color());

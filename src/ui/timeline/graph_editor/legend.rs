@@ -12,6 +12,7 @@ use crate::session::{Actions, SelectAction, Session};
 use crate::ui::labels;
 use crate::ui::timeline::context_menu;
 use crate::ui::timeline::rows::{self, ROW, TimelineAreas, VALUES};
+use crate::ui::timeline::value_scale::ValueKind;
 use crate::ui::widgets::AXES;
 
 /// Width in points of one colour beside a name, and of a letter x, y or z in its colour.
@@ -114,6 +115,10 @@ fn channel_name(
         (false, false) => ui.visuals().weak_text_color(),
     };
     rows::line(ui, beside, &labels::channel_of_joint(*channel), colour);
+    let metres = session.document().metres_per_unit();
+    let (_, unit) = ValueKind::of(*channel).unit(metres);
+    let (font, weak) = (TextStyle::Small.resolve(ui.style()), ui.visuals().weak_text_color());
+    ui.painter().text(pos2(rect.right() - 4.0, y), Align2::RIGHT_CENTER, unit, font, weak);
     if response.clicked() {
         ruler.request_focus();
         let channels = rows::after_click(ui, session.selection().channels(), *channel);
