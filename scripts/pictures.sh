@@ -56,7 +56,7 @@ picture_of_example() {
     local name=$1 frames quality=(-quality 76 -strip) file all time nth
     frames=$(mktemp -d)
     file=$frames/example.json
-    "$program" examples "$name" -o "$file"
+    "$program" examples "$name" | without_names >"$file"
     "$program" export "$file" --size 16x10 --fps 30 -o "$frames/####.png"
     all=("$frames"/*.png)
     rm "$frames"/*.png
@@ -74,6 +74,16 @@ picture_of_example() {
     montage "$frames"/*.png -tile 6x4 -geometry 288x180+0+0 "${quality[@]}" \
         "assets/pictures/$name.jpg"
     rm -r "$frames"
+}
+
+# Reads a document and writes it without names in the view, which would be specks.
+without_names() {
+    python3 -c '
+import json, sys
+document = json.load(sys.stdin)
+shown = ["cursor", "skin", "trail", "paths", "grid_xz", "ground", "axes", "shadow"]
+document["overlays"] = [it for it in document.get("overlays") or shown if it != "labels"]
+json.dump(document, sys.stdout)'
 }
 
 # first NAME: the frame of 24 that is shown first, and while the picture does not play.

@@ -2,10 +2,11 @@
 
 use std::collections::HashMap;
 
+use egui::text::LayoutJob;
 use egui::{
-    Align2, Color32, ColorImage, CornerRadius, Id, Label, Rect, Response, Role, ScrollArea, Sense,
-    Stroke, StrokeKind, TextStyle, TextureHandle, TextureOptions, Ui, UiBuilder, Vec2, WidgetInfo,
-    pos2, vec2,
+    Align, Align2, Color32, ColorImage, CornerRadius, FontSelection, Id, Label, Rect, Response,
+    RichText, Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle, TextureHandle,
+    TextureOptions, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
 use image::{DynamicImage, ImageFormat, RgbImage};
 
@@ -76,10 +77,19 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
 
 /// Says in `rect` what the example under the mouse is, or what pictures are for.
 fn say(ui: &mut Ui, rect: Rect, example: Option<Example>) {
-    let sentence = example
-        .map_or("Point at a picture to see it move, and click it to open the example.", |it| {
-            it.sentence
-        });
+    let mut sentence = LayoutJob::default();
+    let mut add = |text: RichText| {
+        text.append_to(&mut sentence, ui.style(), FontSelection::Default, Align::Center);
+    };
+    match example {
+        Some(example) => {
+            add(RichText::new(format!("{}: ", example.title)).strong());
+            add(RichText::new(example.sentence));
+        }
+        None => add(RichText::new(
+            "Point at a picture to see it move, and click it to open the example.",
+        )),
+    }
     let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
     inside.set_clip_rect(rect.intersect(ui.clip_rect()));
     inside.add_space(4.0);
