@@ -195,7 +195,7 @@ impl Renderer {
         self.solids.draw_hidden(&mut pass);
         self.spheres.draw(&mut pass);
         self.lines.draw(&mut pass);
-        self.skins.draw_see_through(&mut pass);
+        self.skins.draw_see_through(&mut pass, canvas.drawn_size());
         drop(pass);
         encoder.finish()
     }

@@ -176,8 +176,9 @@ impl Skins {
     }
 
     /// Draws the see-through parts of opaque skins, and the nearest surfaces of see-through skins,
-    /// over what is drawn already.
-    pub fn draw_see_through(&self, pass: &mut wgpu::RenderPass<'_>) {
+    /// over what is drawn already except opaque skins, which stay in front of their onion skins. To be
+    /// drawn last: opaque skins then have the nearest depth. `size` is that of the picture in pixels.
+    pub fn draw_see_through(&self, pass: &mut wgpu::RenderPass<'_>, size: (u32, u32)) {
         let Some(pipelines) = &self.pipelines else { return };
         for [skin, part] in &self.blended {
             let skin = &self.skins[*skin];
@@ -187,12 +188,24 @@ impl Skins {
                 material.draw(pass, pipelines.blended.of(material, skin));
             }
         }
-        for skin in self.skins.iter().filter(|skin| !skin.is_opaque) {
-            let all = |_: &SkinMaterial| true;
-            self.draw(pass, skin, all, |material| {
+        let all = |_: &SkinMaterial| true;
+        let depth = |skin| {
+            move |material: &SkinMaterial| {
                 let is_textured = material.textures != PartTextures::None;
                 pipelines.depth[usize::from(is_textured)].of(material, skin)
-            });
+            }
+        };
+        if self.skins.iter().any(|skin| !skin.is_opaque) {
+            let [width, height] = [size.0, size.1].map(|side| side as f32);
+            // As near as possible, so that what follows is behind them.
+            pass.set_viewport(0.0, 0.0, width, height, 1.0, 1.0);
+            for skin in self.skins.iter().filter(|skin| skin.is_opaque) {
+                self.draw(pass, skin, |material| material.centre.is_none(), depth(skin));
+            }
+            pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
+        }
+        for skin in self.skins.iter().filter(|skin| !skin.is_opaque) {
+            self.draw(pass, skin, all, depth(skin));
             self.draw(pass, skin, all, |material| pipelines.see_through.of(material, skin));
             self.draw_wireframe(pass, pipelines, skin);
         }

@@ -148,11 +148,6 @@ pub struct OnionSkin {
 }
 
 impl OnionSkin {
-    /// True for those next to the playhead, one on each side.
-    pub fn is_nearest(&self) -> bool {
-        self.opacity == 1.0
-    }
-
     fn write_skin(&mut self, posed: &Posed) {
         let Document { rig, display, .. } = posed.document();
         let skin = rig.skin.as_ref().filter(|_| display.shows(Overlay::Skin));

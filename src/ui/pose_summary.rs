@@ -32,7 +32,7 @@ pub(in crate::ui) fn sentence_on_limb(session: &Session, limb: &ShownLimb) -> St
     match pose.reach {
         Some(Reach::TooFar) => format!("Too far: the limb points at {target}."),
         Some(Reach::TooClose) => "Too close: the limb is folded.".to_owned(),
-        Some(Reach::Reached) | None => format!("Reached: the {end} is at {target}."),
+        Some(Reach::Reached) | None => format!("The {end} is at {target}."),
     }
 }
 

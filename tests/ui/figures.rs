@@ -66,7 +66,7 @@ fn the_page_of_a_figure_names_its_limb_and_chooses_another_one() {
     let bones = |bench: &Bench| bench.session().limb_of_page().is_some();
     assert!(bones(&bench));
     bench.apply([SelectAction::Joints(vec![bench.joint("head")])]);
-    assert!(bench.says("head is in no limb, so this is that of left_hand"));
+    assert!(bench.says("head belongs to no limb. This page shows the one chosen above."));
     assert!(bench.says("Law of cosines") && bones(&bench), "the page is not empty");
     bench.click(Role::ComboBox, "Limb");
     // The list of targets has buttons of these names, too.

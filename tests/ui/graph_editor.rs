@@ -320,7 +320,7 @@ fn degrees_are_at_the_left_and_lengths_at_the_right_each_with_its_unit() {
     let (mut bench, [_, other]) = figure();
     let is_beside = |bench: &Bench, image: &str| {
         let plot = bench.rect(Role::Image, image);
-        let degrees = bench.rect(Role::Label, "Axis in degrees (°)");
+        let degrees = bench.rect(Role::Label, "Axis in degrees (deg)");
         let metres = bench.rect(Role::Label, "Axis in metres (m)");
         degrees.right() <= plot.left() + 0.5 && metres.left() >= plot.right() - 0.5
     };
@@ -328,7 +328,7 @@ fn degrees_are_at_the_left_and_lengths_at_the_right_each_with_its_unit() {
     let both = format!("Curves of {other} · rotation, {other} · offset");
     assert!(is_beside(&bench, &both));
     bench.apply([SelectAction::Channels(vec![Channel::Rotation(JointId::new(1))])]);
-    assert!(bench.shows(Role::Label, "Axis in degrees (°)"));
+    assert!(bench.shows(Role::Label, "Axis in degrees (deg)"));
     assert!(!bench.shows(Role::Label, "Axis in metres (m)"));
     let mut arm = graph();
     arm.apply([Action::from(KeysEdit::Key(vec![channels::HAND]))]);
@@ -361,7 +361,7 @@ fn ctrl_and_the_wheel_zoom_values_about_the_mouse_and_a_double_click_on_the_axis
     // The key under the mouse stays there.
     let zoomed = raised(&mut bench);
     assert!((zoomed - before / 1.44).abs() < 0.05 * before, "{zoomed}, {before} before");
-    let axis = bench.rect(Role::Label, "Axis in degrees (°)").center();
+    let axis = bench.rect(Role::Label, "Axis in degrees (deg)").center();
     bench.double_click_at(axis);
     bench.settle();
     assert!((raised(&mut bench) - before).abs() < 0.01 * before);

@@ -216,11 +216,7 @@ fn the_explain_panel_closes_and_opens_from_the_view_menu() {
 #[test]
 fn the_explain_panel_says_in_a_sentence_how_far_the_arm_reaches() {
     for (hand, reach, sentence) in [
-        (
-            Vec3::new(250.0, 120.0, 60.0),
-            Reach::Reached,
-            "Reached: the hand is at its target, the Cursor.",
-        ),
+        (Vec3::new(250.0, 120.0, 60.0), Reach::Reached, "The hand is at its target, the Cursor."),
         (
             Vec3::new(537.2, 0.0, 0.0),
             Reach::TooFar,

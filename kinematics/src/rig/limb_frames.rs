@@ -139,7 +139,7 @@ impl LimbFrames {
     pub const WRIST_BALL: f32 = 22.0;
     /// Distance from the wrist to the tip of the middle finger.
     pub const HAND: f32 = 105.0;
-    const POINTER_RADIUS: f32 = 1.4;
+    const POINTER_RADIUS: f32 = 1.0;
     const SEED_LENGTH: f32 = 500.0;
 
     /// The pose.

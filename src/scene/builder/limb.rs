@@ -11,7 +11,7 @@ use crate::scene::{Globe, Label, LabelSide, Scene, Solid, SphereShell};
 use crate::session::{Overlays, ShownLimb};
 
 /// Part of the sky in the Pointer's colour, so that it stays behind the limbs.
-const POINTER_FADED: f32 = 0.35;
+const POINTER_FADED: f32 = 0.45;
 
 /// Adds the guides of a limb that the display shows, and the figure that lights up.
 pub(super) fn add_guides(

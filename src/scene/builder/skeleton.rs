@@ -114,6 +114,10 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
     if let Some(skin) = skin {
         skin.add(scene, posed.skeleton(), overlays, display);
     }
+    let farthest = |past: bool| {
+        let of_side = overlays.onion_skins.iter().filter(move |it| it.past == past);
+        of_side.map(|it| it.frames).max()
+    };
     for onion_skin in &overlays.onion_skins {
         match (&skin, &onion_skin.skin) {
             (Some(skin), Some(pose)) => {
@@ -125,7 +129,9 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
                 drawn.posed(&onion_skin.pose).add_onion_skin(scene, colour);
             }
         }
-        if display.shows(Overlay::Labels) && onion_skin.is_nearest() {
+        // Outside of all others, so that the text covers none.
+        let is_outside = farthest(onion_skin.past) == Some(onion_skin.frames);
+        if display.shows(Overlay::Labels) && is_outside {
             add_name_of(scene, onion_skin, drawn.pose);
         }
     }
@@ -228,11 +234,8 @@ fn add_name_of(scene: &mut Scene, onion_skin: &OnionSkin, now: &SkeletonPose) {
     let (Some(there), Some(here)) = (there, here) else { return };
     let is_left = (there - here).dot(scene.camera.projection(1.0).right) < 0.0;
     let side = if is_left { LabelSide::AboveLeft } else { LabelSide::Above };
-    let (colour, which) = match onion_skin.past {
-        true => (scene.palette.text, "before"),
-        false => (scene.palette.accent, "after"),
-    };
-    let label = Label::new(there, 0.0, side, colour);
+    let which = if onion_skin.past { "before" } else { "after" };
+    let label = Label::new(there, 0.0, side, scene.palette.text);
     scene.add_label(label, format_args!("{} frames {which}", onion_skin.frames));
 }
 

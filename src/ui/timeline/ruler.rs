@@ -17,8 +17,6 @@ use crate::words;
 
 /// Minimum distance in points between labels.
 const LABEL: f64 = 64.0;
-/// Distance in points of a label from its line.
-const BESIDE_LINE: f32 = 4.0;
 /// Minimum distance in points between lines.
 const LINE: f64 = 7.0;
 
@@ -43,8 +41,8 @@ pub(in crate::ui) fn ui(
     widgets::set_range(ui, response.id, timeline.start..=timeline.end, step);
     paint(ui, scale, timeline, rect);
     if response.has_focus() {
-        let stroke = Stroke::new(1.0, style::accent(ui));
-        ui.painter().rect_stroke(rect.shrink(0.5), 2.0, stroke, egui::StrokeKind::Inside);
+        let stroke = Stroke::new(2.0, style::accent(ui));
+        ui.painter().hline(rect.x_range(), rect.bottom() - 1.0, stroke);
     }
     if response.double_clicked() {
         TimeScale::fit(ui);
@@ -167,11 +165,7 @@ fn paint(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     for (x, time) in ticks.lines(scale, timeline, ticks.major) {
         painter.vline(x, rect.bottom() - 7.0..=rect.bottom(), Stroke::new(1.0, strong));
         let label = format!("{} s", text::fixed(time, digits));
-        let label = painter.layout_no_wrap(label, font.clone(), strong);
-        // To the right of its line, where the playhead leaves it free, as long as there is room.
-        let has_room = x + BESIDE_LINE + label.size().x < rect.right();
-        let left = if has_room { x + BESIDE_LINE } else { x - BESIDE_LINE - label.size().x };
-        painter.galley(pos2(left, rect.top() + 1.0), label, strong);
+        painter.text(pos2(x, rect.top() + 1.0), Align2::CENTER_TOP, label, font.clone(), strong);
     }
 }
 

@@ -50,7 +50,7 @@ impl ValueKind {
     /// Name and sign of the unit, in a document with these metres in a unit.
     pub fn unit(self, metres_per_unit: f32) -> (&'static str, &'static str) {
         match (self, metres_per_unit) {
-            (Self::Angle, _) => ("degrees", "°"),
+            (Self::Angle, _) => ("degrees", "deg"),
             (Self::Length, 1.0) => ("metres", "m"),
             (Self::Length, 0.01) => ("centimetres", "cm"),
             (Self::Length, 0.001) => ("millimetres", "mm"),
@@ -246,6 +246,7 @@ pub(in crate::ui::timeline) fn axes(
     sides: AxisSides,
     plot: Rect,
     metres_per_unit: f32,
+    curves: &[ChannelCurve],
 ) {
     let font = TextStyle::Small.resolve(ui.style());
     let colours = (ui.visuals().text_color(), ui.visuals().weak_text_color());
@@ -262,7 +263,8 @@ pub(in crate::ui::timeline) fn axes(
         let (name, unit) = kind.unit(metres_per_unit);
         let top = Align2([align, egui::Align::Min]);
         let unit_font = TextStyle::Body.resolve(ui.style());
-        ui.painter().text(pos2(x, plot.top() + 2.0), top, unit, unit_font, colours.0);
+        let unit_colour = shared_colour(curves, kind).unwrap_or(colours.0);
+        ui.painter().text(pos2(x, plot.top() + 2.0), top, unit, unit_font, unit_colour);
         let marks = marks(scales.range(kind), plot.height());
         for mark in marks.values() {
             let y = scales.y(kind, mark, plot.y_range());
@@ -273,7 +275,8 @@ pub(in crate::ui::timeline) fn axes(
             // The unit stands above the labels.
             if y > plot.top() + BETWEEN && y < plot.bottom() - 6.0 {
                 let label = Align2([align, egui::Align::Center]);
-                write(pos2(x, y), label, written(mark, marks.step), colours.1);
+                let colour = shared_colour(curves, kind).unwrap_or(colours.1);
+                write(pos2(x, y), label, written(mark, marks.step), colour);
             }
         }
         let rect = if is_left {
@@ -292,6 +295,13 @@ pub(in crate::ui::timeline) fn axes(
         response
             .on_hover_text(format!("Values in {name}. Ctrl+wheel zooms, double-click shows all"));
     }
+}
+
+/// The colour of all curves of a kind; `None` if they differ.
+fn shared_colour(curves: &[ChannelCurve], kind: ValueKind) -> Option<Color32> {
+    let mut colours = curves.iter().filter(|curve| curve.kind == kind).map(|curve| curve.colour);
+    let first = colours.next()?;
+    colours.all(|colour| colour == first).then_some(first)
 }
 
 /// Round values within a range.

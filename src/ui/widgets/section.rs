@@ -24,6 +24,11 @@ pub(in crate::ui) fn fold_opened_sections(ui: &Ui) {
     }
 }
 
+/// Where the title rows of unfolded sections are noted, for [`whole_rows`].
+fn open_headers() -> Id {
+    Id::unique("title rows of open sections")
+}
+
 /// Where the sections are noted that were folded before [`open_section`].
 fn opened_sections() -> Id {
     Id::unique("sections to fold again")
@@ -116,6 +121,11 @@ fn show_section(
     let section = CollapsingHeader::new(heading).id_salt(id).default_open(open);
     let shown = section.open(is_asked.then_some(true)).show_unindented(ui, contents);
     let header = &shown.header_response;
+    if shown.body_returned.is_some() {
+        ui.data_mut(|data| {
+            data.get_temp_mut_or_default::<Vec<Rect>>(open_headers()).push(header.rect);
+        });
+    }
     if is_asked && header.changed() {
         ui.data_mut(|data| {
             data.get_temp_mut_or_default::<Vec<Id>>(opened_sections()).push(header.id);
@@ -147,6 +157,7 @@ pub(in crate::ui) fn whole_rows<T>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -
     let before: f32 = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let clip = ui.clip_rect();
     ui.set_clip_rect(clip.with_max_y(clip.bottom() - before));
+    ui.data_mut(|data| data.remove::<Vec<Rect>>(open_headers()));
     let shown = contents(ui);
     let layer = ui.layer_id();
     let cut = ui.ctx().viewport(|viewport| {
@@ -162,6 +173,11 @@ pub(in crate::ui) fn whole_rows<T>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -
         let tops = rects().filter(is_cut).filter(is_row).map(|rect| clip.bottom() - rect.top());
         tops.fold(0.0, f32::max)
     });
+    // Nor a title without the first row below it.
+    let end = clip.bottom() - cut;
+    let headers: Vec<Rect> = ui.data(|data| data.get_temp(open_headers())).unwrap_or_default();
+    let is_last = |header: &&Rect| (end - MOST / 2.0..end + 1.0).contains(&header.bottom());
+    let cut = headers.iter().find(is_last).map_or(cut, |header| clip.bottom() - header.top());
     if cut != before {
         ui.data_mut(|data| data.insert_temp(id, cut));
         ui.request_repaint();

@@ -88,7 +88,7 @@ fn titled_limb<'a>(
     match limb {
         Some(limb) if session.rig().sole_limb().is_none() => {
             choose_limb(ui, session, limb, actions);
-            why_this_limb(ui, session, limb);
+            why_this_limb(ui, session);
         }
         Some(_) => {}
         None => {
@@ -119,16 +119,12 @@ fn choose_limb(ui: &mut Ui, session: &Session, limb: &ShownLimb, actions: &mut A
 }
 
 /// Says why this limb of a figure is shown.
-fn why_this_limb(ui: &mut Ui, session: &Session, limb: &ShownLimb) {
+fn why_this_limb(ui: &mut Ui, session: &Session) {
     let (rig, selected) = (session.rig(), session.selection().active());
     let outside = selected.filter(|joint| rig.limb_target_of(*joint).is_none());
     let why = match outside.and_then(|joint| rig.skeleton.joint(joint)) {
         Some(joint) => {
-            let shown = name(session, limb);
-            format!(
-                "{} is in no limb, so this is that of {shown}, coloured in the view.",
-                joint.name
-            )
+            format!("{} belongs to no limb. This page shows the one chosen above.", joint.name)
         }
         None if selected.is_some() => {
             "The limb of the selected joint; its bones are coloured in the view.".to_owned()

@@ -15,7 +15,7 @@ use crate::words::LimbWords;
 
 const HEIGHT: f32 = 140.0;
 /// Room for labels at the sides, and above and below.
-const MARGINS: Vec2 = vec2(24.0, 26.0);
+const MARGINS: Vec2 = vec2(30.0, 26.0);
 /// Radius of the arcs of the angles, in points.
 const ARC: f32 = 18.0;
 
@@ -131,7 +131,9 @@ impl RightTriangle {
     ) -> Vec<(Rect, LimbFigure)> {
         let [text, weak, accent] = colours(ui);
         let sides = [(shoulder, corner), (corner, cursor), (shoulder, cursor)];
-        let lines = sides.map(|(from, to)| [from, to]).to_vec();
+        let mut lines = sides.map(|(from, to)| [from, to]).to_vec();
+        // Labels keep clear of the circles at the ends, too.
+        lines.extend([shoulder, cursor].map(|end| [end - vec2(5.0, 0.0), end + vec2(5.0, 0.0)]));
         let mut labels = FigureLabels::new(painter, ui, lines);
         for (nth, colour) in [(2, text), (0, weak), (1, weak)] {
             let (from, to) = sides[nth];

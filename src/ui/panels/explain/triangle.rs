@@ -16,7 +16,7 @@ use crate::session::{LimbFigure, ShownLimb};
 use crate::ui::style;
 use crate::words::LimbWords;
 
-const HEIGHT: f32 = 164.0;
+const HEIGHT: f32 = 156.0;
 /// Room for labels at the sides, and above and below.
 const MARGINS: Vec2 = vec2(44.0, 34.0);
 /// Radius of the arcs of the angles, in points.
@@ -81,11 +81,10 @@ impl TriangleDrawing {
         // triangle that would not fit has a smaller scale.
         let widest = (right - left).max(limb.frames.bones().outer_limit() * 0.7);
         let scale = (inside.width() / widest).min(inside.height() / pose.out.max(1e-9));
-        let middle = vec2(left + right, pose.out) / 2.0;
-        let place = |along: f32, out: f32| {
-            let from_middle = vec2(along - middle.x, middle.y - out);
-            inside.center() + from_middle * scale
-        };
+        let middle = (left + right) / 2.0;
+        // The Pointer keeps its height while the elbow moves.
+        let place =
+            |along: f32, out: f32| inside.center_bottom() + vec2(along - middle, -out) * scale;
         let palette = style::palette(ui);
         Self {
             shoulder: place(0.0, 0.0),

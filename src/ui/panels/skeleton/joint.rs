@@ -34,26 +34,45 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions:
 }
 
 fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
+    /// Opacity of sliders that do nothing as long as a target poses the joint.
+    const IDLE: f32 = 0.6;
+    let opacity = ui.opacity();
+    if say_what_poses(ui, session, index) {
+        ui.multiply_opacity(IDLE);
+    }
+    angles(ui, session, index, joint, actions);
+    ui.set_opacity(opacity);
+}
+
+/// Says what else poses a joint. Returns whether its angles do nothing.
+fn say_what_poses(ui: &mut Ui, session: &Session, joint: JointId) -> bool {
+    let rig = session.rig();
+    let target = rig.target_that_turns(joint);
+    if let Some((target, (_, end))) = target.and_then(|it| Some((it, targets::end(rig, it)?))) {
+        let is_whole = target.influence >= 1.0;
+        let how = match is_whole {
+            true => "poses this joint; these angles (FK) count only without it.",
+            false => "poses this joint in part; the rest is these angles (FK).",
+        };
+        ui.weak(format!("The target of {end} {how}"));
+        return is_whole;
+    }
+    if rig.is_pulled(joint) {
+        ui.weak(
+            "Follows hands and feet where they cannot reach; these angles (FK) count only without \
+             them.",
+        );
+    }
+    false
+}
+
+fn angles(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
     let colours = style::palette(ui).axes;
     let follows_path = labels::why_on_path(session, index);
     let shown = match follows_path {
         Some(_) => session.posed().evaluated_skeleton().fk[index].rotation,
         None => joint.rotation,
     };
-    if let Some(target) = session.rig().target_that_turns(index)
-        && let Some((_, end)) = targets::end(session.rig(), target)
-    {
-        let how = match target.influence < 1.0 {
-            true => "poses this joint in part; the rest is these angles (FK).",
-            false => "poses this joint; these angles (FK) count only without it.",
-        };
-        ui.weak(format!("The target of {end} {how}"));
-    } else if session.rig().is_pulled(index) {
-        ui.weak(
-            "Follows hands and feet where they cannot reach; these angles (FK) count only without \
-             them.",
-        );
-    }
     for axis in RotationAxis::ALL {
         let label = axis.name();
         let is_stiff = joint.limits.is_fixed(axis);

@@ -54,7 +54,7 @@ pub(in crate::ui) fn ui(
     legend::ui(ui, session, areas, &entries, ruler, actions);
     let scales = scales(ui, areas, &drawn, &curves);
     let metres = session.document().metres_per_unit();
-    value_scale::axes(ui, scales, sides(&drawn), areas.keys, metres);
+    value_scale::axes(ui, scales, sides(&drawn), areas.keys, metres, &curves);
     plot(ui, scale, areas, &curves, scales);
     let graph = GraphView { session, scale, area: areas.keys, scales, curves: &curves };
     mouse::paint(ui, &graph);
