@@ -12,7 +12,7 @@ struct Look {
 @group(1) @binding(0) var<uniform> look: Look;
 
 // Opacity of the tint where the surface faces the eye, as a fraction of that at the outline.
-const TINT_INSIDE = 0.25;
+const TINT_INSIDE = 0.15;
 
 // A constant, because a software adapter samples the texture even if a uniform selects the other branch.
 override IS_TEXTURED = false;
@@ -101,7 +101,7 @@ fn fragment(s: Surface, @builtin(front_facing) is_front: bool) -> @location(0) v
     // Strong at the outline and faint in the middle, so that the shape stays readable.
     let to_eye = normalize(mix(view.eye - s.world, -view.forward, view.orthographic));
     let grazing = 1.0 - abs(dot(normal, to_eye));
-    let tint = look.tint.a * smoothstep(0.1, 0.6, s.weight) * mix(TINT_INSIDE, 1.0, grazing * grazing);
+    let tint = look.tint.a * smoothstep(0.1, 0.6, s.weight) * mix(TINT_INSIDE, 1.0, grazing * grazing * grazing);
     let tinted = mix(mix(own, of_weight, look.has_weights), look.tint.rgb, tint);
     let light = reflected(tinted, normal) + emitted;
     // As bright as `encoded` is exact.

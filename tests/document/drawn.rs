@@ -130,6 +130,10 @@ fn an_onion_skin_of_a_figure_is_its_skin_or_else_its_bones_with_hips() {
         let [.., skin] = &overlays.onion_skins[..] else { panic!("onion skins") };
         let scene = Scene::new(shown.posed(), &overlays, Theme::Dark);
         assert_eq!(skin.skin.is_some(), has_skin);
+        // At 24 frames a second the motion starts 12 frames before.
+        let names = scene.labels.iter().map(|label| scene.text(label));
+        let names: Vec<&str> = names.filter(|name| name.contains(" frames ")).collect();
+        assert_eq!(names, ["10 frames before", "15 frames after"]);
         if has_skin {
             let [own, onion_skins @ ..] = &scene.skins[..] else { panic!("no skins") };
             assert_eq!(onion_skins.len(), overlays.onion_skins.len());

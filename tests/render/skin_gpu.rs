@@ -276,6 +276,39 @@ fn what_a_texture_cuts_out_of_a_see_through_skin_lets_all_behind_through() {
 }
 
 #[test]
+fn a_figure_stays_in_front_of_its_onion_skins() {
+    let square = square(vec![SkinPart { colour: [1.0, 0.0, 0.0], ..SkinPart::white(2) }]);
+    let scene = || Scene::new(&square.at(0.0), &Overlays::default(), Theme::Dark);
+    let mut ghost = scene().skins.pop().expect("a skin");
+    // Nearer than the figure, and beside it in part.
+    (ghost.colour, ghost.offset) = (ghost.colour.with_opacity(0.5), Vec3::new(0.6, 0.0, 0.5));
+    let picture = |has_figure: bool, has_ghost: bool| {
+        let mut scene = scene();
+        scene.skins.truncate(usize::from(has_figure));
+        scene.skins.extend(has_ghost.then(|| ghost.clone()));
+        draw(&scene)
+    };
+    let [empty, alone] = [false, true].map(|has_figure| picture(has_figure, false));
+    let [ghost_alone, both] = [false, true].map(|has_figure| picture(has_figure, true));
+    // Clear of edges, where pixels are mixed.
+    let covers = |picture: &image::RgbaImage, x: u32, y: u32| {
+        let around = [(x - 2, y), (x + 2, y), (x, y - 2), (x, y + 2)];
+        around.iter().all(|(x, y)| picture.get_pixel(*x, *y) != empty.get_pixel(*x, *y))
+    };
+    let inside = (2..SIZE.0 - 2).flat_map(|x| (2..SIZE.1 - 2).map(move |y| (x, y)));
+    let (mut shared, mut beside) = (0, 0);
+    for (x, y) in inside.filter(|(x, y)| covers(&ghost_alone, *x, *y)) {
+        if covers(&alone, x, y) {
+            shared += 1;
+            assert_eq!(both.get_pixel(x, y), alone.get_pixel(x, y), "at {x}, {y}");
+        } else if alone.get_pixel(x, y) == empty.get_pixel(x, y) {
+            beside += u32::from(both.get_pixel(x, y) == ghost_alone.get_pixel(x, y));
+        }
+    }
+    assert!(shared > 500 && beside > 500, "{shared} pixels of both, {beside} of the ghost");
+}
+
+#[test]
 fn vertices_have_their_colours() {
     let [red, green] = [[255, 0, 0, 255], [0, 255, 0, 255]];
     let square = coloured_square(vec![SkinPart::white(2)], vec![red, red, green, green]);

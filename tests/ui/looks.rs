@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::arm::ArmEdit;
+use crate::common::documents::open_example;
 use egui::accesskit::Role;
 use egui::{FontDefinitions, Key, Order, PointerButton, vec2};
 use egui_kittest::SnapshotResults;
@@ -155,6 +156,25 @@ fn nothing_moves_when_a_number_changes_its_width() {
         let expected = ["Yaw theta z", "Level h c", "Elbow angle phi"]
             .map(|name| fresh.rect(Role::Label, name).top());
         assert_eq!(labels, expected, "{hand}");
+    }
+}
+
+#[test]
+fn panels_that_scroll_end_at_a_whole_row() {
+    for height in (600..660).step_by(7) {
+        for example in ["arm", "human"] {
+            let mut bench = Bench::of_size(vec2(1280.0, height as f32));
+            bench.apply([open_example(example)]);
+            bench.settle();
+            let picture = bench.harness.render().expect("a picture");
+            // Above the line between the panels.
+            let y = bench.viewport().bottom() as u32 - 3;
+            let panel = picture.get_pixel(12, y);
+            // Left of the scroll bar.
+            let right = bench.viewport().left() as u32 - 16;
+            let other = (13..right).find(|x| picture.get_pixel(*x, y) != panel);
+            assert_eq!(other, None, "{example}, {height} points high");
+        }
     }
 }
 

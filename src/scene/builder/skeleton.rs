@@ -132,7 +132,7 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
         // Outside of all others, so that the text covers none.
         let is_outside = farthest(onion_skin.past) == Some(onion_skin.frames);
         if display.shows(Overlay::Labels) && is_outside {
-            add_name_of(scene, onion_skin, drawn.pose);
+            add_name_of(scene, onion_skin, drawn.pose, HEAD * drawn.reach);
         }
     }
     let all = display.shows(Overlay::FkPose);
@@ -225,8 +225,11 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, children: &mut V
     }
 }
 
+/// Radius of what is around the highest tip of a figure, as a fraction of its reach.
+const HEAD: f32 = 0.06;
+
 /// Says above an onion skin which frame it is, on its side away from the pose `now`.
-fn add_name_of(scene: &mut Scene, onion_skin: &OnionSkin, now: &SkeletonPose) {
+fn add_name_of(scene: &mut Scene, onion_skin: &OnionSkin, now: &SkeletonPose, clearance: f32) {
     let [there, here] = [&onion_skin.pose, now].map(|pose| {
         let tips = pose.ids().map(|joint| pose.tip(joint));
         tips.max_by(|one, other| one.y.total_cmp(&other.y))
@@ -235,7 +238,7 @@ fn add_name_of(scene: &mut Scene, onion_skin: &OnionSkin, now: &SkeletonPose) {
     let is_left = (there - here).dot(scene.camera.projection(1.0).right) < 0.0;
     let side = if is_left { LabelSide::AboveLeft } else { LabelSide::Above };
     let which = if onion_skin.past { "before" } else { "after" };
-    let label = Label::new(there, 0.0, side, scene.palette.text);
+    let label = Label::new(there, clearance, side, scene.palette.text);
     scene.add_label(label, format_args!("{} frames {which}", onion_skin.frames));
 }
 

@@ -151,8 +151,10 @@ fn cut(ui: &Ui, title: &str) -> WidgetText {
 /// Shows the contents of a scrolled area without the row that its lower edge cuts. Larger things, such
 /// as drawings, are hidden while only a sliver of them is seen.
 pub(in crate::ui) fn whole_rows<T>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> T) -> T {
-    /// Greatest height of what is hidden, in points: more than a row.
-    const MOST: f32 = 30.0;
+    /// Greatest height of a row, in points.
+    const ROW: f32 = 30.0;
+    /// Height of a larger thing, in points, up to which it is hidden.
+    const SLIVER: f32 = 60.0;
     let id = ui.scope_id().with("cut row");
     let before: f32 = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let clip = ui.clip_rect();
@@ -162,12 +164,13 @@ pub(in crate::ui) fn whole_rows<T>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -
     let layer = ui.layer_id();
     let cut = ui.ctx().viewport(|viewport| {
         let rects = || viewport.this_pass.widgets.get_layer(layer).map(|widget| widget.rect);
+        let most = |rect: &Rect| if rect.height() > 2.0 * SLIVER { SLIVER } else { ROW };
         let is_cut = |rect: &Rect| {
             clip.x_range().contains(rect.center().x)
-                && (clip.bottom() - MOST..clip.bottom()).contains(&rect.top())
+                && (clip.bottom() - most(rect)..clip.bottom()).contains(&rect.top())
                 && rect.bottom() > clip.bottom() + 1.0
         };
-        // What holds a whole row is not a row.
+        // What holds a whole row is no row.
         let is_row =
             |rect: &Rect| !rects().any(|it| it.bottom() <= clip.bottom() && rect.contains_rect(it));
         let tops = rects().filter(is_cut).filter(is_row).map(|rect| clip.bottom() - rect.top());
@@ -176,7 +179,7 @@ pub(in crate::ui) fn whole_rows<T>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -
     // Nor a title without the first row below it.
     let end = clip.bottom() - cut;
     let headers: Vec<Rect> = ui.data(|data| data.get_temp(open_headers())).unwrap_or_default();
-    let is_last = |header: &&Rect| (end - MOST / 2.0..end + 1.0).contains(&header.bottom());
+    let is_last = |header: &&Rect| (end - ROW / 2.0..end + 1.0).contains(&header.bottom());
     let cut = headers.iter().find(is_last).map_or(cut, |header| clip.bottom() - header.top());
     if cut != before {
         ui.data_mut(|data| data.insert_temp(id, cut));
