@@ -3,6 +3,7 @@ use glam::Vec3;
 use crate::document::{Document, Overlay, Posed, Skin, Track, TwistReferenceKind};
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{ChainSolver, ChainTarget, Method, SubStep};
+use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{JointId, SkeletonPose};
 use crate::kinematics::skin::SkinPose;
 use crate::kinematics::twist::TransportedFrame;
@@ -26,6 +27,8 @@ pub struct Overlays {
     pub hovered: Option<JointId>,
     /// The line of the limb's figures that lights up.
     pub figure: Option<LimbFigure>,
+    /// The limb that the open page is about, whose bones alone are coloured; `None` to colour all.
+    pub limb: Option<Limb>,
     /// The joints that keep a tip from its target.
     pub concerned: Vec<JointId>,
     /// Shown iterates of the solver run or of the comparison.
@@ -238,6 +241,8 @@ impl Session {
         overlays.selection.extend_from_slice(self.selection().joints());
         overlays.hovered = self.selection().hovered();
         overlays.figure = self.selection().figure();
+        let target = self.limb_of_page().and_then(|limb| self.rig().target(limb.target));
+        overlays.limb = target.and_then(|index| self.rig().targets[index].limb_in(self.skeleton()));
         overlays.concerned.clear();
         let is_figure = self.rig().sole_limb().is_none();
         if let (Some(found), true) =

@@ -3,8 +3,10 @@
 use glam::{Vec2, Vec3};
 use ik_arm::document::{Display, Document, Overlay, SkeletonRig, Skin, Target, Theme};
 use ik_arm::kinematics::skeleton::{Balance, Joint, JointId, Skeleton};
-use ik_arm::scene::{Line, Scene};
-use ik_arm::session::{FileAction, Overlays, PlaybackAction, Session};
+use ik_arm::scene::{Line, Palette, Scene, Solid};
+use ik_arm::session::{
+    DisplayEdit, FileAction, Overlays, PanelTab, PlaybackAction, SelectAction, Session, ViewAction,
+};
 
 use crate::common::documents::{self, open_example};
 
@@ -108,6 +110,37 @@ fn a_skin_stands_for_the_limbs_of_an_arm_and_colours_its_hand() {
     assert_eq!([&bare, &skinned, &both].map(|it| it.skins.len()), [0, 1, 1]);
     assert_eq!(skinned.hands[0].colour, skinned.skins[0].colour);
     assert_eq!(skinned.shadows, bare.shadows);
+}
+
+#[test]
+fn the_page_about_a_limb_colours_its_bones_alone() {
+    let mut session = Session::default();
+    session.apply(open_example("human"));
+    session.apply(DisplayEdit::ShowOverlay(Overlay::Skin, false));
+    // The start and the colour of each bone.
+    let bones = |session: &Session| {
+        let scene = Scene::new(session.posed(), &session.overlays(), Theme::Dark);
+        let start = |solid: &Solid| solid.transform.transform_point3(Vec3::ZERO);
+        scene.solids.iter().map(|solid| (start(solid), solid.colour)).collect::<Vec<_>>()
+    };
+    let palette = Palette::new(Theme::Dark);
+    for (end, limb) in [
+        ("right_hand", ["right_upper_arm", "right_forearm"]),
+        ("left_foot", ["left_thigh", "left_shin"]),
+    ] {
+        let joint = |name: &str| session.skeleton().find(name).expect("a joint");
+        let (end, limb) = (joint(end), limb.map(joint));
+        session.apply(SelectAction::Joints(vec![end]));
+        let bones = bones(&session);
+        for (joint, colour) in limb.into_iter().zip([palette.upper, palette.lower]) {
+            let coloured: Vec<_> = bones.iter().filter(|bone| bone.1 == colour).collect();
+            let [(start, _)] = coloured[..] else { panic!("{} bones", coloured.len()) };
+            assert!(start.distance(session.skeleton_pose().base(joint)) < 1e-5);
+        }
+    }
+    session.apply(ViewAction::ShowTab(PanelTab::Race));
+    let coloured = bones(&session).iter().filter(|bone| bone.1 == palette.upper).count();
+    assert!(coloured > 10, "all bones have the limbs' colours: {coloured}");
 }
 
 #[test]

@@ -33,6 +33,8 @@ pub(super) const GHOST: f32 = 0.45;
 /// Ratio of the radius of a rod between a bone and a child away from it to the thinner bone's
 /// radius.
 const LINK: f32 = 0.3;
+/// Part of the sky in the grey of bones outside of the limb that a page is about.
+const OF_NO_LIMB: f32 = 0.25;
 /// Ratio of the radius of an onion skin to that of the figure, so that it hides less of the figure.
 const ONION_SKIN: f32 = 0.5;
 /// Contrast of the FK pose with the background, from 0 to 1.
@@ -102,14 +104,20 @@ impl<'a> DrawnSkeleton<'a> {
         }
     }
 
-    /// Colour of a bone. The limbs' colours alternate from parent to child; locked, hovered and
-    /// selected joints have colours of their own.
+    /// Colour of a bone. The limbs' colours alternate from parent to child, or are those of the limb
+    /// that a page is about; locked, hovered and selected joints have colours of their own.
     pub fn colour(&self, scene: &Scene, joint: JointId, overlays: &Overlays) -> Colour {
         let palette = &scene.palette;
         let colour = if self.shows_stiffness {
             palette.weight(self.stiffness(joint))
         } else if self.joints[joint.index()].locked {
             palette.joint
+        } else if let Some(limb) = overlays.limb {
+            match joint {
+                _ if joint == limb.upper => palette.upper,
+                _ if joint == limb.lower => palette.lower,
+                _ => palette.joint.mixed(palette.sky_top, OF_NO_LIMB),
+            }
         } else if self.depths[joint.index()].is_multiple_of(2) {
             palette.upper
         } else {

@@ -101,14 +101,18 @@ pub(in crate::ui) fn locked_axis(
     }
 }
 
-/// Draws the two bones of the limb that a page is about, in the colours that they have there.
+/// Draws the two bones of the limb that a page is about over the skin that hides them, in the colours
+/// that they have there.
 pub(in crate::ui) fn limb_of_page(
     painter: &Painter,
     ui: &Ui,
     screen: &ScreenProjection,
     session: &Session,
 ) {
-    let Some(limb) = session.limb_of_page() else { return };
+    let display = session.shown().display;
+    let has_skin = session.rig().skin.is_some() && display.shows(Overlay::Skin);
+    let is_hidden = has_skin && !display.shows(Overlay::Bones);
+    let Some(limb) = session.limb_of_page().filter(|_| is_hidden) else { return };
     let joints = [LimbPart::Root, LimbPart::Elbow, LimbPart::Hand];
     let places = joints.map(|part| screen.place(limb.frames.origin(part)));
     let [Some(base), Some(middle), Some(end)] = places else { return };
