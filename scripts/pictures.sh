@@ -100,7 +100,7 @@ come_closer() {
     local part=1 up=0 speed=0
     case $1 in
         walk) part=0.6 speed=1.41 ;; # metres in a second, past the middle of its way after one
-        tadpoles | snake) part=0.8 ;;
+        tadpoles) part=0.8 ;;
         reaching-down) part=0.85 ;;
         looking-at-the-hand) part=0.6 up=0.3 ;;
     esac
