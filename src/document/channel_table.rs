@@ -230,6 +230,16 @@ impl Channel {
     }
 }
 
+impl Document {
+    /// The joint that a channel belongs to: for a target of a limb, its hand or foot. `None` if the
+    /// channel belongs to no joint.
+    pub fn joint_of(&self, channel: Channel) -> Option<JointId> {
+        let target = channel.target().and_then(|joint| self.rig.target(joint));
+        let end = target.map(|index| self.rig.end_of(&self.rig.targets[index]));
+        end.or(channel.joint())
+    }
+}
+
 /// Channels in a document.
 impl Channel {
     /// The channel of the point that a target has at present: in the world if it is pinned, else in

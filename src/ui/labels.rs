@@ -49,7 +49,7 @@ pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
         return name.to_owned();
     }
     let name = channel_of_joint(channel);
-    match joint_of_channel(session, channel) {
+    match session.document().joint_of(channel) {
         Some(joint) => {
             let joint = session.rig().skeleton.joint(joint);
             format!("{} · {name}", joint.map_or("–", |joint| &joint.name))
@@ -63,14 +63,6 @@ fn morph_name(session: &Session, channel: Channel) -> Option<&str> {
     let Channel::Morph(morph) = channel else { return None };
     let mesh = session.rig().skin.as_ref()?.mesh_skin()?.in_file()?;
     Some(&mesh.mesh.morphs().get(usize::from(morph))?.name)
-}
-
-/// The joint that the name of a channel begins with; `None` if it belongs to no joint.
-pub(in crate::ui) fn joint_of_channel(session: &Session, channel: Channel) -> Option<JointId> {
-    let rig = session.rig();
-    let target = channel.target().and_then(|joint| rig.target(joint));
-    let end = target.map(|index| rig.end_of(&rig.targets[index]));
-    end.or(channel.joint())
 }
 
 /// Name of a channel beside that of its joint, such as "rotation".

@@ -12,6 +12,7 @@ use ik_arm::session::{
 };
 
 use crate::bench::{Bench, LARGE};
+use crate::common::documents::open_example;
 use glam::Vec3;
 
 const LEFT: PointerButton = PointerButton::Primary;
@@ -316,17 +317,17 @@ fn names_of_joints_and_channels_are_clicked_and_clicked_again() {
 }
 
 #[test]
-fn degrees_are_at_the_left_and_lengths_at_the_right_each_with_its_unit() {
+fn degrees_and_lengths_have_lanes_below_each_other_each_with_its_unit_at_the_left() {
     let (mut bench, [_, other]) = figure();
-    let is_beside = |bench: &Bench, image: &str| {
-        let plot = bench.rect(Role::Image, image);
-        let degrees = bench.rect(Role::Label, "Axis in degrees (deg)");
-        let metres = bench.rect(Role::Label, "Axis in metres (m)");
-        degrees.right() <= plot.left() + 0.5 && metres.left() >= plot.right() - 0.5
-    };
     bench.apply([SelectAction::Joints(vec![JointId::new(1)])]);
-    let both = format!("Curves of {other} · rotation, {other} · offset");
-    assert!(is_beside(&bench, &both));
+    let plot = bench.rect(Role::Image, &format!("Curves of {other} · rotation, {other} · offset"));
+    let [degrees, metres] =
+        ["Axis in degrees (deg)", "Axis in metres (m)"].map(|name| bench.rect(Role::Label, name));
+    for axis in [degrees, metres] {
+        assert!(axis.right() <= plot.left() + 0.5);
+        assert!((axis.height() - 0.5 * plot.height()).abs() < 1.0);
+    }
+    assert!(degrees.bottom() <= metres.top() + 0.5);
     bench.apply([SelectAction::Channels(vec![Channel::Rotation(JointId::new(1))])]);
     assert!(bench.shows(Role::Label, "Axis in degrees (deg)"));
     assert!(!bench.shows(Role::Label, "Axis in metres (m)"));
@@ -336,6 +337,45 @@ fn degrees_are_at_the_left_and_lengths_at_the_right_each_with_its_unit() {
         arm.shows(Role::Label, "Axis in millimetres (mm)"),
         "a unit of the arm is a millimetre"
     );
+}
+
+#[test]
+fn of_many_curves_those_of_the_first_joint_are_drawn_until_others_are_selected() {
+    let mut bench = Bench::with_timeline(LARGE);
+    bench.apply([open_example("walk")]);
+    bench.apply([ViewAction::ShowGraphEditor(true)]);
+    assert!(bench.shows(Role::Image, "Curves of pelvis · rotation, pelvis · offset"));
+    assert!(bench.shows(Role::Button, "Curve of spine · rotation"), "all are listed");
+    bench.click(Role::Button, "Curve of spine · rotation");
+    assert!(bench.shows(Role::Image, "Curves of spine · rotation"));
+}
+
+#[test]
+fn ctrl_and_the_wheel_zoom_only_the_lane_under_the_mouse() {
+    let (mut bench, [_, other]) = figure();
+    bench.apply([SelectAction::Joints(vec![JointId::new(1)])]);
+    let plot = bench.rect(Role::Image, &format!("Curves of {other} · rotation, {other} · offset"));
+    let lanes = |bench: &mut Bench| {
+        let picture = bench.harness.render().expect("a picture");
+        let half = picture.height().min(plot.bottom() as u32);
+        let (top, middle) = (plot.top() as u32 + 1, plot.center().y as u32);
+        let part = |from: u32, to: u32| -> Vec<_> {
+            (from..to)
+                .flat_map(|y| [plot.left() + 90.0, plot.right() - 90.0].map(|x| (x, y)))
+                .map(|(x, y)| *picture.get_pixel(x as u32, y))
+                .collect()
+        };
+        [part(top, middle - 2), part(middle + 2, half - 1)]
+    };
+    let before = lanes(&mut bench);
+    bench.move_to(pos2(plot.center().x, plot.top() + 0.3 * plot.height()));
+    bench.hold(Modifiers::COMMAND);
+    bench.wheel(6.0);
+    bench.hold(Modifiers::NONE);
+    bench.settle();
+    let after = lanes(&mut bench);
+    assert_ne!(after[0], before[0], "angles");
+    assert_eq!(after[1], before[1], "lengths");
 }
 
 /// Degrees by which the key at 3 s moves when it is dragged up by 20 points.

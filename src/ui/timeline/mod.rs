@@ -43,8 +43,7 @@ pub(in crate::ui) fn height(ui: &Ui, session: &Session) -> f32 {
 /// Shows the timeline.
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let curves = session.preferences().curves;
-    let beside = if curves { graph_editor::width_at_right(session) } else { 0.0 };
-    let areas = TimelineAreas::new(ui.available_rect_before_wrap(), beside);
+    let areas = TimelineAreas::new(ui.available_rect_before_wrap());
     ui.expand_to_include_rect(areas.whole);
     let timeline = session.document().timeline;
     let mut scale = TimeScale::load(ui, session, areas.keys.x_range());

@@ -9,7 +9,6 @@ use crate::document::Channel;
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::spline::Spline;
 use crate::session::{Key, KeysEdit, Session};
-use crate::ui::labels;
 
 /// Width in points of the column of channel names.
 pub(super) const NAMES: f32 = 180.0;
@@ -39,16 +38,14 @@ pub(super) struct TimelineAreas {
 }
 
 impl TimelineAreas {
-    /// The areas in `whole`, with `beside` points free at the right of the keys.
-    pub fn new(whole: Rect, beside: f32) -> Self {
+    pub fn new(whole: Rect) -> Self {
         let split = (whole.left() + NAMES).min(whole.right());
         let top = (whole.top() + RULER).min(whole.bottom());
-        let right = (whole.right() - beside).max(split);
         Self {
             whole,
             names: Rect::from_min_max(pos2(whole.left(), top), pos2(split, whole.bottom())),
-            ruler: Rect::from_min_max(pos2(split, whole.top()), pos2(right, top)),
-            keys: Rect::from_min_max(pos2(split, top), pos2(right, whole.bottom())),
+            ruler: Rect::from_min_max(pos2(split, whole.top()), pos2(whole.right(), top)),
+            keys: Rect::from_min_max(pos2(split, top), whole.max),
         }
     }
 }
@@ -135,7 +132,7 @@ impl FoldedJoints {
 pub(in crate::ui) fn rows(session: &Session, folded: &FoldedJoints) -> Vec<DopeSheetRow> {
     let mut of_joint: BTreeMap<Option<JointId>, Vec<Channel>> = BTreeMap::new();
     for channel in channels(session) {
-        of_joint.entry(labels::joint_of_channel(session, channel)).or_default().push(channel);
+        of_joint.entry(session.document().joint_of(channel)).or_default().push(channel);
     }
     let skeleton = session.skeleton();
     let mut rows = Vec::new();
@@ -181,7 +178,7 @@ impl DopeSheetRow {
         match self {
             Self::All => keys.tracks().collect(),
             Self::Joint { joint, .. } => {
-                let is_below = |channel| labels::joint_of_channel(session, channel) == Some(joint);
+                let is_below = |channel| session.document().joint_of(channel) == Some(joint);
                 keys.tracks().filter(|(channel, _)| is_below(*channel)).collect()
             }
             Self::Channel { channel, .. } => {
@@ -238,9 +235,8 @@ impl KeySet {
     pub fn of(session: &Session, keys: &[Key]) -> Self {
         let bits = |time: f64| (time + 0.0).to_bits();
         let keys = keys.iter();
-        let joint = |(channel, time): &Key| {
-            Some((labels::joint_of_channel(session, *channel)?, bits(*time)))
-        };
+        let joint =
+            |(channel, time): &Key| Some((session.document().joint_of(*channel)?, bits(*time)));
         Self {
             keys: keys.clone().map(|(channel, time)| (*channel, bits(*time))).collect(),
             joints: keys.clone().filter_map(joint).collect(),

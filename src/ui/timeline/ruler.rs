@@ -199,7 +199,7 @@ pub(in crate::ui) fn playhead(
     let (x, accent) = (scale.x(session.playback().time()), style::accent(ui));
     painter.vline(x, ruler.bottom() - 8.0..=bottom, Stroke::new(1.5, accent));
     let place = |dx: f32, dy: f32| pos2(x + dx, ruler.bottom() + dy);
-    let points = [(-5.0, -11.0), (5.0, -11.0), (5.0, -5.0), (0.0, 0.0), (-5.0, -5.0)]
+    let points = [(-5.0, -9.5), (5.0, -9.5), (5.0, -5.0), (0.0, 0.0), (-5.0, -5.0)]
         .map(|(x, y)| place(x, y));
     let rim = Stroke::new(1.0, Color32::from_black_alpha(90));
     painter.add(Shape::convex_polygon(points.to_vec(), accent, rim));

@@ -1,9 +1,8 @@
-//! The scales of the values in the graph editor, one for angles, one for lengths and one for
-//! ratios, and their axes, one at the left and one at the right; a channel's curve.
+//! The lanes of the graph editor: one for angles, one for lengths and one for ratios, each with a
+//! scale and an axis of its own; a channel's curve.
 
 use egui::{
-    Align2, Color32, Event, Id, Pos2, Rangef, Rect, Role, Sense, Stroke, TextStyle, Ui, WidgetInfo,
-    pos2,
+    Align2, Color32, Event, Id, Pos2, Rect, Role, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2,
 };
 use egui_plot::LineStyle;
 
@@ -17,7 +16,7 @@ use crate::ui::widgets::text;
 const ROOM: f64 = 0.12;
 
 /// The unit of a value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum ValueKind {
     Angle,
     Length,
@@ -68,9 +67,36 @@ impl ValueKind {
     }
 }
 
-/// The displayed values at the bottom and the top of the plot, for each [`ValueKind`].
+/// The kinds of values that are shown. Each has a lane of its own, above each other and equally high,
+/// so that no two units share a height.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Lanes([bool; 3]);
+
+impl Lanes {
+    pub fn of(channels: &[Channel]) -> Self {
+        Self(ValueKind::ALL.map(|kind| channels.iter().any(|it| ValueKind::of(*it) == kind)))
+    }
+
+    /// The kinds with a lane, from the top.
+    pub fn kinds(self) -> impl Iterator<Item = ValueKind> {
+        ValueKind::ALL.into_iter().filter(move |kind| self.0[kind.index()])
+    }
+
+    /// The lane of a kind in a plot; the whole plot for a kind that is not shown.
+    pub fn lane(self, kind: ValueKind, plot: Rect) -> Rect {
+        let Some(nth) = self.kinds().position(|it| it == kind) else { return plot };
+        let height = plot.height() / self.kinds().count() as f32;
+        let top = plot.top() + nth as f32 * height;
+        Rect::from_x_y_ranges(plot.x_range(), top..=top + height)
+    }
+}
+
+/// The displayed values at the bottom and the top of the lane of each [`ValueKind`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ValueScales([(f64, f64); 3]);
+pub(super) struct ValueScales {
+    ranges: [(f64, f64); 3],
+    lanes: Lanes,
+}
 
 /// Scales that the user has set, for these curves.
 #[derive(Clone, PartialEq)]
@@ -81,27 +107,8 @@ struct StoredScales {
 
 impl ValueScales {
     /// The scales that show all displayed values of each kind.
-    pub fn fitting<I: Iterator<Item = f64>>(values: impl Fn(ValueKind) -> I) -> Self {
-        Self(ValueKind::ALL.map(|kind| fitted(values(kind))))
-    }
-
-    /// With the zeros of both axes at one height, for which each range becomes at most twice as long.
-    /// Unchanged if there is one axis alone, or one of them has no zero.
-    pub fn with_level_zeros(mut self, sides: AxisSides) -> Self {
-        let (Some(left), Some(right)) = (sides.left, sides.right) else { return self };
-        let [one, other] = [left, right].map(|kind| self.part(kind, 0.0));
-        let (lower, upper) = (one.min(other), one.max(other));
-        if lower <= 0.0 || upper >= 1.0 {
-            return self;
-        }
-        // The height at which both ranges grow by the same factor, 1 − lower + upper.
-        let zero = upper / (1.0 - lower + upper);
-        for kind in [left, right] {
-            let (low, high) = self.range(kind);
-            let span = (-low / zero).max(high / (1.0 - zero));
-            self.0[kind.index()] = (-zero * span, (1.0 - zero) * span);
-        }
-        self
+    pub fn fitting<I: Iterator<Item = f64>>(lanes: Lanes, values: impl Fn(ValueKind) -> I) -> Self {
+        Self { ranges: ValueKind::ALL.map(|kind| fitted(values(kind))), lanes }
     }
 
     /// The scales that the user has set for the curves of `channels`; `None` if there are none.
@@ -115,23 +122,30 @@ impl ValueScales {
         ui.data_mut(|data| data.remove::<StoredScales>(id()));
     }
 
-    /// Zooms by Ctrl+wheel about the mouse in `area`, and pans by `is_panning`, which is vertical
-    /// only after a zoom. Stores changed scales for the curves of `channels`.
-    pub fn follow_input(&mut self, ui: &Ui, area: Rect, channels: &[Channel], is_panning: bool) {
+    /// Zooms the lane under the mouse by Ctrl+wheel, and pans the lane in which a drag began by
+    /// `is_panning`, which is vertical only after a zoom. Stores changed scales for the curves of
+    /// `channels`.
+    pub fn follow_input(&mut self, ui: &Ui, plot: Rect, channels: &[Channel], is_panning: bool) {
         let before = *self;
         let Some(mouse) = ui.input(|input| input.pointer.latest_pos()) else { return };
-        if is_panning && Self::load(ui, channels).is_some() {
-            let up = f64::from(ui.input(|input| input.pointer.delta().y) / area.height().max(1.0));
-            self.change(|low, high| (low + up * (high - low), high + up * (high - low)));
+        if is_panning
+            && Self::load(ui, channels).is_some()
+            && let Some(origin) = ui.input(|input| input.pointer.press_origin())
+            && let Some((kind, lane)) = self.lane_at(origin, plot)
+        {
+            let up = f64::from(ui.input(|input| input.pointer.delta().y) / lane.height().max(1.0));
+            self.change(kind, |low, high| (low + up * (high - low), high + up * (high - low)));
         }
-        if ui.rect_contains_pointer(area) {
-            let height = f64::from((area.bottom() - mouse.y) / area.height().max(1.0));
+        if ui.rect_contains_pointer(plot)
+            && let Some((kind, lane)) = self.lane_at(mouse, plot)
+        {
+            let height = f64::from((lane.bottom() - mouse.y) / lane.height().max(1.0));
             for event in ui.input(|input| input.events.clone()) {
                 if let Event::MouseWheel { unit, delta, modifiers, .. } = event
                     && modifiers.command
                 {
                     let factor = WHEEL.powf(-f64::from(wheel_steps(unit, delta).y));
-                    self.change(|low, high| {
+                    self.change(kind, |low, high| {
                         let still = low + height * (high - low);
                         (still + (low - still) * factor, still + (high - still) * factor)
                     });
@@ -144,38 +158,41 @@ impl ValueScales {
         }
     }
 
-    /// Changes the bottom and top of all scales, as far as they stay finite and apart.
-    fn change(&mut self, change: impl Fn(f64, f64) -> (f64, f64)) {
+    fn lane_at(self, at: Pos2, plot: Rect) -> Option<(ValueKind, Rect)> {
+        let mut lanes = self.lanes.kinds().map(|kind| (kind, self.lanes.lane(kind, plot)));
+        lanes.find(|(_, lane)| lane.y_range().contains(at.y))
+    }
+
+    /// Changes the bottom and top of a lane, as far as they stay finite and apart.
+    fn change(&mut self, kind: ValueKind, change: impl Fn(f64, f64) -> (f64, f64)) {
         /// Greatest value, and least distance between top and bottom relative to them.
         const LIMITS: (f64, f64) = (1e30, 1e-6);
-        for scale in &mut self.0 {
-            let (low, high) = change(scale.0, scale.1);
-            let size = low.abs().max(high.abs());
-            if size < LIMITS.0 && high - low > LIMITS.1 * size.max(LIMITS.1) {
-                *scale = (low, high);
-            }
+        let range = &mut self.ranges[kind.index()];
+        let (low, high) = change(range.0, range.1);
+        let size = low.abs().max(high.abs());
+        if size < LIMITS.0 && high - low > LIMITS.1 * size.max(LIMITS.1) {
+            *range = (low, high);
         }
     }
 
-    /// The displayed values at the bottom and the top of the plot.
+    pub fn lanes(self) -> Lanes {
+        self.lanes
+    }
+
+    /// The displayed values at the bottom and the top of a lane.
     pub fn range(self, kind: ValueKind) -> (f64, f64) {
-        self.0[kind.index()]
+        self.ranges[kind.index()]
     }
 
-    pub fn points_per_value(self, kind: ValueKind, height: f32) -> f64 {
+    pub fn points_per_value(self, kind: ValueKind, plot: Rect) -> f64 {
         let (low, high) = self.range(kind);
-        f64::from(height) / (high - low)
+        f64::from(self.lanes.lane(kind, plot).height()) / (high - low)
     }
 
-    /// Part of the way from the bottom to the top of the plot at which a displayed value is.
-    pub fn part(self, kind: ValueKind, value: f64) -> f64 {
-        let (low, high) = self.range(kind);
-        (value - low) / (high - low)
-    }
-
-    /// Screen y of a displayed value in a plot over `ys`.
-    pub fn y(self, kind: ValueKind, value: f64, ys: Rangef) -> f32 {
-        ys.max - (self.part(kind, value) * f64::from(ys.span())) as f32
+    /// Screen y of a displayed value.
+    pub fn y(self, kind: ValueKind, value: f64, plot: Rect) -> f32 {
+        let up = (value - self.range(kind).0) * self.points_per_value(kind, plot);
+        self.lanes.lane(kind, plot).bottom() - up as f32
     }
 }
 
@@ -217,74 +234,42 @@ const BETWEEN: f32 = 20.0;
 /// Distance in points between the plot and the labels.
 const GAP: f32 = 5.0;
 
-/// The kinds of values that have an axis, at the left and at the right. Angles are at the left and
-/// lengths at the right; ratios take a side that is free.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::ui::timeline) struct AxisSides {
-    pub left: Option<ValueKind>,
-    pub right: Option<ValueKind>,
-}
-
-impl AxisSides {
-    pub fn new(has: impl Fn(ValueKind) -> bool) -> Self {
-        let given = |kind| Some(kind).filter(|kind| has(*kind));
-        let [angle, length, ratio] = ValueKind::ALL.map(given);
-        match (angle, length) {
-            (Some(_), Some(_)) => Self { left: angle, right: length },
-            (one, None) | (None, one) => match one {
-                Some(_) => Self { left: one, right: ratio },
-                None => Self { left: ratio, right: None },
-            },
-        }
-    }
-}
-
-/// Draws lines through the plot at round values, and the axes beside it.
+/// Draws an axis at the left of each lane, lines through the lane at round values, and a line
+/// between the lanes.
 pub(in crate::ui::timeline) fn axes(
     ui: &Ui,
     scales: ValueScales,
-    sides: AxisSides,
     plot: Rect,
     metres_per_unit: f32,
     curves: &[ChannelCurve],
 ) {
-    let font = TextStyle::Small.resolve(ui.style());
-    let colours = (ui.visuals().text_color(), ui.visuals().weak_text_color());
-    let write = |at: Pos2, align: Align2, text: String, colour: Color32| {
-        ui.painter().text(at, align, text, font.clone(), colour);
-    };
-    for (kind, is_left) in [(sides.left, true), (sides.right, false)] {
-        let Some(kind) = kind else { continue };
-        let (x, align) = if is_left {
-            (plot.left() - GAP, egui::Align::Max)
-        } else {
-            (plot.right() + GAP, egui::Align::Min)
-        };
+    let line = ui.visuals().widgets.noninteractive.bg_stroke;
+    for kind in scales.lanes.kinds() {
+        let lane = scales.lanes.lane(kind, plot);
+        let beside = Rect::from_x_y_ranges(plot.left() - VALUES..=plot.left(), lane.y_range());
+        if lane.top() > plot.top() {
+            ui.painter().hline(beside.left()..=plot.right(), lane.top(), line);
+        }
         let (name, unit) = kind.unit(metres_per_unit);
-        let top = Align2([align, egui::Align::Min]);
-        let unit_font = TextStyle::Body.resolve(ui.style());
-        let unit_colour = shared_colour(curves, kind).unwrap_or(colours.0);
-        ui.painter().text(pos2(x, plot.top() + 2.0), top, unit, unit_font, unit_colour);
-        let marks = marks(scales.range(kind), plot.height());
+        let shared = shared_colour(curves, kind);
+        let x = plot.left() - GAP;
+        let colour = shared.unwrap_or(ui.visuals().text_color());
+        let font = TextStyle::Body.resolve(ui.style());
+        ui.painter().text(pos2(x, lane.top() + 2.0), Align2::RIGHT_TOP, unit, font, colour);
+        let marks = marks(scales.range(kind), lane.height());
+        let colour = shared.unwrap_or(ui.visuals().weak_text_color());
+        let font = TextStyle::Small.resolve(ui.style());
         for mark in marks.values() {
-            let y = scales.y(kind, mark, plot.y_range());
-            if is_left {
-                let line = ui.visuals().widgets.noninteractive.bg_stroke.color.gamma_multiply(0.5);
-                ui.painter().with_clip_rect(plot).hline(plot.x_range(), y, Stroke::new(1.0, line));
-            }
+            let y = scales.y(kind, mark, plot);
+            let across = Stroke::new(1.0, line.color.gamma_multiply(0.5));
+            ui.painter().with_clip_rect(lane).hline(lane.x_range(), y, across);
             // The unit stands above the labels.
-            if y > plot.top() + BETWEEN && y < plot.bottom() - 6.0 {
-                let label = Align2([align, egui::Align::Center]);
-                let colour = shared_colour(curves, kind).unwrap_or(colours.1);
-                write(pos2(x, y), label, written(mark, marks.step), colour);
+            if y > lane.top() + BETWEEN && y < lane.bottom() - 6.0 {
+                let text = written(mark, marks.step);
+                ui.painter().text(pos2(x, y), Align2::RIGHT_CENTER, text, font.clone(), colour);
             }
         }
-        let rect = if is_left {
-            Rect::from_min_max(pos2(plot.left() - VALUES, plot.top()), plot.left_bottom())
-        } else {
-            Rect::from_min_max(plot.right_top(), pos2(plot.right() + VALUES, plot.bottom()))
-        };
-        let response = ui.interact(rect, Id::unique(("timeline axis", is_left)), Sense::click());
+        let response = ui.interact(beside, Id::unique(("timeline axis", unit)), Sense::click());
         response.widget_info(|| {
             WidgetInfo::labeled(Role::Label, true, format!("Axis in {name} ({unit})"))
         });
@@ -338,38 +323,4 @@ fn round_step(step: f64) -> f64 {
     let power = 10_f64.powf(step.max(1e-30).log10().floor());
     let steps = [1.0, 2.0, 2.5, 5.0].map(|times| times * power);
     steps.into_iter().find(|it| *it >= step).unwrap_or(10.0 * power)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{AxisSides, ValueKind, ValueScales};
-
-    const SIDES: AxisSides =
-        AxisSides { left: Some(ValueKind::Angle), right: Some(ValueKind::Length) };
-
-    #[test]
-    fn zeros_of_both_axes_are_level_and_all_values_stay_in_view() {
-        for (angles, lengths) in
-            [((-10.0, 30.0), (-4.0, 1.0)), ((-1.0, 99.0), (-99.0, 1.0)), ((-2.0, 2.0), (-1.0, 3.0))]
-        {
-            let before = ValueScales([angles, lengths, (0.0, 1.0)]);
-            let after = before.with_level_zeros(SIDES);
-            let [one, other] =
-                [ValueKind::Angle, ValueKind::Length].map(|kind| after.part(kind, 0.0));
-            assert!((one - other).abs() < 1e-12, "{one} {other}");
-            for kind in [ValueKind::Angle, ValueKind::Length] {
-                let ((low, high), (least, greatest)) = (before.range(kind), after.range(kind));
-                assert!(least <= low + 1e-9 && greatest >= high - 1e-9);
-                assert!(greatest - least <= 2.0 * (high - low));
-            }
-        }
-    }
-
-    #[test]
-    fn an_axis_without_a_zero_keeps_its_scale() {
-        let scales = ValueScales([(-10.0, 30.0), (900.0, 1_100.0), (0.0, 1.0)]);
-        assert_eq!(scales.with_level_zeros(SIDES), scales);
-        let alone = AxisSides { right: None, ..SIDES };
-        assert_eq!(scales.with_level_zeros(alone), scales);
-    }
 }

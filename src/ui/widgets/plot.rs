@@ -1,10 +1,12 @@
 //! Settings shared by all plots, and a bar that shows a scale of colours.
 
-use egui::{Align2, Color32, FontId, Rangef, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{
+    Align2, AsIdSalt, Color32, FontId, Rangef, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2,
+};
 use egui_plot::{AxisHints, GridMark, Plot, PlotBounds, PlotUi};
 
 /// A plot that the mouse cannot pan or zoom; `height` is in points.
-pub(in crate::ui) fn still<'a>(id: &'static str, height: f32) -> Plot<'a> {
+pub(in crate::ui) fn still<'a>(id: impl AsIdSalt, height: f32) -> Plot<'a> {
     Plot::new(id)
         .height(height)
         .show_background(false)

@@ -20,6 +20,8 @@ use mouse::DopeSheetView;
 
 /// Distance in points from the centre of a key's diamond to a corner.
 const SIZE: f32 = 5.0;
+/// The same for the key of one channel, below those of several.
+const OF_CHANNEL: f32 = 4.0;
 /// Half the height of a diamond among dense keys, in points.
 const SMALLEST: f32 = 2.0;
 /// Space at the left of a name below a heading, in points.
@@ -197,14 +199,14 @@ impl DopeSheet<'_> {
             let hovered = x - last >= NEAR && self.key(ui, row, time, at, rect, actions);
             last = x;
             let visuals = ui.visuals();
-            let plain = match row {
-                DopeSheetRow::All | DopeSheetRow::Joint { .. } => visuals.weak_text_color(),
-                DopeSheetRow::Channel { channel, .. } => key_colour(ui, channel),
+            let (plain, colour) = match row {
+                DopeSheetRow::All | DopeSheetRow::Joint { .. } => (SIZE, visuals.text_color()),
+                DopeSheetRow::Channel { channel, .. } => (OF_CHANNEL, key_colour(ui, channel)),
             };
             let (size, fill, rim) = if picked {
                 (SIZE + 1.0, style::accent(ui), Stroke::new(1.5, visuals.strong_text_color()))
             } else {
-                (SIZE, plain, Stroke::new(1.0, visuals.extreme_bg_color))
+                (plain, colour, Stroke::new(1.0, visuals.extreme_bg_color))
             };
             let size = if hovered { size + 1.0 } else { size.min(room) };
             painter.add(diamond(at, size, fill, rim));

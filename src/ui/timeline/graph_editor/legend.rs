@@ -42,7 +42,7 @@ pub(in crate::ui::timeline) fn ui(
             ui.spacing_mut().item_spacing.y = 0.0;
             let mut above = None;
             for entry in entries {
-                let joint = labels::joint_of_channel(session, entry.channel);
+                let joint = session.document().joint_of(entry.channel);
                 if joint != above
                     && let Some(joint) = joint
                 {
@@ -93,7 +93,7 @@ fn channel_name(
     let is_selected = session.selection().channels().contains(channel);
     let id = ("timeline curve", *channel);
     let (rect, response) = item(ui, id, is_selected, &format!("Curve of {full}"));
-    let indent = if labels::joint_of_channel(session, *channel).is_some() { 18.0 } else { 10.0 };
+    let indent = if session.document().joint_of(*channel).is_some() { 18.0 } else { 10.0 };
     let y = rect.center().y;
     let has_axes = colours.len() == AXES.len();
     let swatch = if has_axes { LETTER } else { SWATCH };

@@ -3,13 +3,15 @@
 mod legend;
 mod mouse;
 
-use egui::{Color32, Id, PointerButton, Response, Role, Sense, Ui, UiBuilder, Vec2b, WidgetInfo};
+use egui::{
+    Color32, Id, PointerButton, Rect, Response, Role, Sense, Ui, UiBuilder, Vec2b, WidgetInfo,
+};
 use egui_plot::{Line, LineStyle, PlotBounds, PlotPoints, Points};
 
 use super::drag::{self, TimelineDrag};
-use super::rows::{self, TimelineAreas, VALUES, take_keyboard};
+use super::rows::{self, TimelineAreas, take_keyboard};
 use super::time_scale::TimeScale;
-use super::value_scale::{self, AxisSides, ChannelCurve, ValueKind, ValueScales};
+use super::value_scale::{self, ChannelCurve, Lanes, ValueKind, ValueScales};
 use super::{context_menu, ruler};
 use crate::document::Channel;
 use crate::session::{Actions, Session};
@@ -22,6 +24,8 @@ use mouse::GraphView;
 const MOST: usize = 96;
 /// Maximum number of channels drawn.
 const MOST_DRAWN: usize = 48;
+/// Number of channels up to which all are drawn if nothing is selected. More would be a tangle.
+const FEW: usize = 8;
 /// Distance in points between samples of a curve.
 const GRAIN: f32 = 2.0;
 
@@ -54,8 +58,8 @@ pub(in crate::ui) fn ui(
     legend::ui(ui, session, areas, &entries, ruler, actions);
     let scales = scales(ui, areas, &drawn, &curves);
     let metres = session.document().metres_per_unit();
-    value_scale::axes(ui, scales, sides(&drawn), areas.keys, metres, &curves);
-    plot(ui, scale, areas, &curves, scales);
+    value_scale::axes(ui, scales, areas.keys, metres, &curves);
+    plots(ui, scale, areas.keys, &curves, scales);
     let graph = GraphView { session, scale, area: areas.keys, scales, curves: &curves };
     mouse::paint(ui, &graph);
 
@@ -80,37 +84,36 @@ pub(in crate::ui) fn ui(
     }
 }
 
-/// Width in points of the axis at the right of the curves, if there is one.
-pub(super) fn width_at_right(session: &Session) -> f32 {
-    match sides(&drawn(session, &listed(session))).right {
-        Some(_) => VALUES,
-        None => 0.0,
-    }
-}
-
 /// The channels with keys that can be shown: those of the selected joints or, if none is selected,
 /// all.
 fn listed(session: &Session) -> Vec<Channel> {
     let selected = session.selection().joints();
     let is_listed = |channel: &Channel| {
-        let own = channel.joint().into_iter().chain(labels::joint_of_channel(session, *channel));
+        let own = channel.joint().into_iter().chain(session.document().joint_of(*channel));
         let is_selected = selected.is_empty() || own.into_iter().any(|it| selected.contains(&it));
         channel.is_of_rig() && is_selected
     };
     let mut listed: Vec<Channel> = rows::channels(session).into_iter().filter(is_listed).collect();
     // Channels of one joint stand together.
-    listed.sort_by_key(|channel| labels::joint_of_channel(session, *channel));
+    listed.sort_by_key(|channel| session.document().joint_of(*channel));
     listed.truncate(MOST);
     listed
 }
 
 /// The channels whose curves are shown: of those listed the selected ones, or all if none is
-/// selected.
+/// selected. Where no joint is selected either and there are many, those of the first joint.
 fn drawn(session: &Session, listed: &[Channel]) -> Vec<Channel> {
-    let selected = session.selection().channels();
-    let is_chosen = |channel: &Channel| selected.contains(channel);
+    let selection = session.selection();
+    let is_chosen = |channel: &Channel| selection.channels().contains(channel);
     let chosen: Vec<Channel> = listed.iter().copied().filter(is_chosen).collect();
-    if chosen.is_empty() { listed.iter().copied().take(MOST_DRAWN).collect() } else { chosen }
+    if !chosen.is_empty() {
+        return chosen;
+    }
+    let joint = |channel: &Channel| session.document().joint_of(*channel);
+    let first = listed.first().map(joint);
+    let is_tangle = listed.len() > FEW && selection.joints().is_empty();
+    let is_drawn = |channel: &Channel| !is_tangle || Some(joint(channel)) == first;
+    listed.iter().copied().filter(is_drawn).take(MOST_DRAWN).collect()
 }
 
 fn hint(session: &Session) -> &'static str {
@@ -119,10 +122,6 @@ fn hint(session: &Session) -> &'static str {
     } else {
         "No curves of the selected joints. Press K to key them, or select no joint to see all"
     }
-}
-
-fn sides(drawn: &[Channel]) -> AxisSides {
-    AxisSides::new(|kind| drawn.iter().any(|channel| ValueKind::of(*channel) == kind))
 }
 
 /// The scales of a drag, or those that the user has set, or those that fit.
@@ -137,11 +136,10 @@ fn scales(
     }
     let stored = ValueScales::load(ui, drawn);
     let fitting = || {
-        ValueScales::fitting(|kind| {
+        ValueScales::fitting(Lanes::of(drawn), |kind| {
             let curves = curves.iter().filter(move |curve| curve.kind == kind);
             curves.flat_map(|curve| &curve.line).map(|point| point[1])
         })
-        .with_level_zeros(sides(drawn))
     };
     let mut scales = stored.unwrap_or_else(fitting);
     scales.follow_input(ui, areas.keys, drawn, drag::is_panning(ui));
@@ -206,32 +204,26 @@ fn times(scale: TimeScale) -> Vec<f64> {
     (0..=count).map(|index| from + (to - from) * index as f64 / count as f64).collect()
 }
 
-fn plot(
-    ui: &mut Ui,
-    scale: TimeScale,
-    areas: &TimelineAreas,
-    curves: &[ChannelCurve],
-    scales: ValueScales,
-) {
+/// Draws the curves, each in the lane of its unit.
+fn plots(ui: &mut Ui, scale: TimeScale, area: Rect, curves: &[ChannelCurve], scales: ValueScales) {
     let (from, to) = scale.range();
-    let rect = areas.keys;
-    let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
-    plot::still("timeline curves", rect.height())
-        .width(rect.width())
-        .show_grid(Vec2b::FALSE)
-        .show_axes(Vec2b::FALSE)
-        .show(&mut inside, |plot| {
-            // From the bottom to the top, because each kind of value has a scale of its own.
-            plot::show(plot, PlotBounds::from_min_max([from, 0.0], [to, 1.0]));
-            for curve in curves {
-                let placed = |points: &[[f64; 2]]| -> PlotPoints<'_> {
-                    let points = points.iter();
-                    points.map(|[time, value]| [*time, scales.part(curve.kind, *value)]).collect()
-                };
-                let line = Line::new(&curve.name, placed(&curve.line));
-                plot.line(line.color(curve.colour).width(1.75).style(curve.style));
-                let knots = Points::new(&curve.name, placed(&curve.knots));
-                plot.points(knots.color(curve.colour).radius(3.0));
-            }
-        });
+    for kind in scales.lanes().kinds() {
+        let lane = scales.lanes().lane(kind, area);
+        let (low, high) = scales.range(kind);
+        let mut inside = ui.new_child(UiBuilder::new().max_rect(lane));
+        plot::still(("timeline curves", kind), lane.height())
+            .width(lane.width())
+            .show_grid(Vec2b::FALSE)
+            .show_axes(Vec2b::FALSE)
+            .show(&mut inside, |plot| {
+                plot::show(plot, PlotBounds::from_min_max([from, low], [to, high]));
+                for curve in curves.iter().filter(|curve| curve.kind == kind) {
+                    let points = |points: &[[f64; 2]]| PlotPoints::from(points.to_vec());
+                    let line = Line::new(&curve.name, points(&curve.line));
+                    plot.line(line.color(curve.colour).width(1.75).style(curve.style));
+                    let knots = Points::new(&curve.name, points(&curve.knots));
+                    plot.points(knots.color(curve.colour).radius(3.0));
+                }
+            });
+    }
 }

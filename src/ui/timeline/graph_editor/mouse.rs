@@ -40,11 +40,11 @@ struct Handle<'a> {
 
 impl GraphView<'_> {
     fn points_per_value(&self, kind: ValueKind) -> f64 {
-        self.scales.points_per_value(kind, self.area.height())
+        self.scales.points_per_value(kind, self.area)
     }
 
     fn place(&self, time: f64, kind: ValueKind, value: f64) -> Pos2 {
-        pos2(self.scale.x(time), self.scales.y(kind, value, self.area.y_range()))
+        pos2(self.scale.x(time), self.scales.y(kind, value, self.area))
     }
 
     fn track(&self, channel: Channel) -> Option<&Spline<Vec3>> {
@@ -58,13 +58,14 @@ impl GraphView<'_> {
     /// The places of the keys of a curve that are on screen.
     fn keys<'a>(&'a self, curve: &'a ChannelCurve) -> impl Iterator<Item = (&'a Knot<Vec3>, Pos2)> {
         let knots = self.track(curve.channel).map_or(&[][..], Spline::knots);
-        knots.iter().filter_map(|knot| {
+        let lane = self.scales.lanes().lane(curve.kind, self.area);
+        knots.iter().filter_map(move |knot| {
             let at = self.place(
                 knot.time,
                 curve.kind,
                 curve.kind.factor() * f64::from(knot.value[curve.axis]),
             );
-            self.area.expand(REACH).contains(at).then_some((knot, at))
+            lane.expand(REACH).contains(at).then_some((knot, at))
         })
     }
 
