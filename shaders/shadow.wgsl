@@ -2,7 +2,9 @@
 // floor. The limb is a capsule, and the key light has a width, so that the shadow gets softer and
 // fainter with the height of the limb.
 
-const LIGHT_WIDTH = 0.16;
+// Steeper than the key light, so that a shadow stays near the feet of what casts it.
+const SHADOW_DIRECTION = vec3f(0.193064, 0.877563, 0.438782);
+const LIGHT_WIDTH = 0.2;
 const CONTACT = 0.35; // softness where the limb touches the ground, as a fraction of its radius
 const THIN = 8.0; // softness in radii from which a limb is too thin to hide all light
 const LEAST_RADIUS = 0.6; // points
@@ -27,9 +29,9 @@ struct Ground {
 
 // Centre (x and z) of a ball's shadow on the ground, and radius of the shadow.
 fn shadow_of(ball: vec4f) -> vec3f {
-    let height = ball.y / KEY_DIRECTION.y;
-    let point = ball.xyz - KEY_DIRECTION * height;
-    return vec3f(point.xz, (ball.w * (1.0 + CONTACT) + height * LIGHT_WIDTH) / KEY_DIRECTION.y);
+    let height = ball.y / SHADOW_DIRECTION.y;
+    let point = ball.xyz - SHADOW_DIRECTION * height;
+    return vec3f(point.xz, (ball.w * (1.0 + CONTACT) + height * LIGHT_WIDTH) / SHADOW_DIRECTION.y);
 }
 
 // The same for the ambient light that a ball hides.
@@ -91,14 +93,14 @@ fn hidden_ambient(g: Ground, axis: vec3f) -> f32 {
 fn fragment(g: Ground) -> @location(0) vec4f {
     let axis = g.tip.xyz - g.base.xyz;
     let from_base = g.point - g.base.xyz;
-    let slant = dot(axis, KEY_DIRECTION);
+    let slant = dot(axis, SHADOW_DIRECTION);
     let across = max(dot(axis, axis) - slant * slant, 1e-6);
-    let along = (dot(axis, from_base) - slant * dot(from_base, KEY_DIRECTION)) / across;
+    let along = (dot(axis, from_base) - slant * dot(from_base, SHADOW_DIRECTION)) / across;
     let part = saturate(along);
     let away = axis * part - from_base;
     let radius = mix(g.base.w, g.tip.w, part);
-    let height = max(dot(away, KEY_DIRECTION), 0.0);
-    let miss = length(away - KEY_DIRECTION * height) - radius;
+    let height = max(dot(away, SHADOW_DIRECTION), 0.0);
+    let miss = length(away - SHADOW_DIRECTION * height) - radius;
     let softness = radius * CONTACT + height * LIGHT_WIDTH;
     // A limb much thinner than its soft edge is wide hides only a part of the light.
     let hidden = saturate(THIN * radius / softness);

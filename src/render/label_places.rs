@@ -5,19 +5,19 @@ use crate::scene::{LabelSide, Scene};
 
 /// Height of a line in points.
 pub(super) const LINE_HEIGHT: f32 = 15.0;
-/// Both coordinates of the point on a ball's outline that is nearest to its label, as a fraction of
-/// the ball's radius.
-const DIAGONAL: f32 = core::f32::consts::FRAC_1_SQRT_2;
+/// Across and down, the nearest that a text comes to the middle of a ball, as fractions of the ball's
+/// radius: beside an upright limb, the text is clear of the limb's whole width.
+const CLEAR: Vec2 = Vec2::new(1.0, core::f32::consts::FRAC_1_SQRT_2);
 /// Ratio of the height of letters to that of a line.
 const LETTERS: f32 = 0.75;
 /// Maximum number of lines by which a label is moved away from its point to be clear of others.
 const MOST_LINES: u8 = 3;
 /// Columns and rows of the points of a text at which it may cover a limb.
-const SAMPLES: [u16; 2] = [6, 2];
+const SAMPLES: [u16; 2] = [6, 3];
 /// Least radius in pixels of what a text should not cover.
 const LEAST_RADIUS: f32 = 3.0;
-/// How many of these points a text may cover rather than take its next best place.
-const COST_OF_PLACE: u32 = 1;
+/// How many places farther down the list a text goes rather than cover one of these points.
+const COST_OF_COVER: u32 = 3;
 
 /// Where labels are written, so that none covers another or leaves the picture, nor a limb where
 /// there is room beside it: on its own side of its point, else on another side, else farther away.
@@ -59,7 +59,7 @@ impl LabelPlaces {
                 continue;
             };
             let ball = label.clearance / projection.half_height_at(label.at) * size.y / 2.0;
-            let away = ball * DIAGONAL + label.gap * scale;
+            let away = ball * CLEAR + label.gap * scale;
             let text = Text { point, away, width, line: LINE_HEIGHT * scale };
             let is_free = |pen: &Vec2| {
                 let corners = text.corners(*pen);
@@ -72,11 +72,11 @@ impl LabelPlaces {
             let mut best = (text.pen(label.side, 0), (true, true, u32::MAX));
             for (nth, pen) in (0..).zip(text.places(label.side)) {
                 let covered = text.covered(pen, &self.limbs);
-                let cost = (!is_free(&pen), !is_inside(&pen), covered + COST_OF_PLACE * nth);
+                let cost = (!is_free(&pen), !is_inside(&pen), COST_OF_COVER * covered + nth);
                 if cost < best.1 {
                     best = (pen, cost);
                 }
-                if best.1 <= (false, false, COST_OF_PLACE * (nth + 1)) {
+                if best.1 <= (false, false, nth + 1) {
                     // Later places cost at least this much.
                     break;
                 }
@@ -93,7 +93,7 @@ impl LabelPlaces {
 struct Text {
     point: Vec2,
     /// Distance from the point along each axis.
-    away: f32,
+    away: Vec2,
     width: f32,
     /// Height of a line.
     line: f32,
@@ -109,9 +109,9 @@ impl Text {
 
     fn pen(self, side: LabelSide, lines: u8) -> Vec2 {
         let Self { point, away, width, line } = self;
-        let across = if side.is_left() { -away - width } else { away };
+        let across = if side.is_left() { -away.x - width } else { away.x };
         let farther = f32::from(lines) * line;
-        let drop = if side.is_above() { -away - farther } else { away + 0.6 * line + farther };
+        let drop = if side.is_above() { -away.y - farther } else { away.y + 0.6 * line + farther };
         point + Vec2::new(across, drop)
     }
 
@@ -245,7 +245,7 @@ mod tests {
         let points = |label: &Label, pen: Vec2| {
             let point = pixel(&projection, label.at, SIZE).expect("before the eye");
             let ball = label.clearance / projection.half_height_at(label.at) * SIZE.y / 2.0;
-            let away = ball * DIAGONAL + label.gap;
+            let away = ball * CLEAR + label.gap;
             let text = Text { point, away, width: width(label), line: LINE_HEIGHT };
             [pen, text.pen(label.side, 0)].map(|pen| text.covered(pen, &places.limbs))
         };

@@ -3,7 +3,7 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use super::Gpu;
 use super::pipeline::{self, BindingKind};
-use crate::scene::{Colour, Scene};
+use crate::scene::{Colour, Globe, Scene};
 
 /// Uniforms that all shaders of a scene share: `View` in `view.wgsl`.
 #[repr(C)]
@@ -61,6 +61,11 @@ impl ViewData {
         let (palette, planes) = (&scene.palette, &scene.planes);
         let projection = scene.camera.projection(width as f32 / height as f32);
         let screen = |colour: Colour| Vec4::from_array(colour.channels());
+        // The lower half of a globe shines through the floor.
+        let ground = match scene.globe.filter(Globe::has_size) {
+            Some(_) => palette.ground.with_opacity(0.3 * palette.ground.channels()[3]),
+            None => palette.ground,
+        };
         let shown = |colour: Colour, is_shown: bool| {
             screen(if is_shown { colour } else { colour.with_opacity(0.0) })
         };
@@ -81,7 +86,7 @@ impl ViewData {
             padding: 0.0,
             sky_top: screen(palette.sky_top),
             sky_bottom: screen(palette.sky_bottom),
-            ground: shown(palette.ground, planes.ground),
+            ground: shown(ground, planes.ground),
             grid: shown(palette.grid, planes.grid_xz),
             walls: screen(palette.wall),
         }

@@ -109,6 +109,13 @@ impl Palette {
         plain.with_opacity(OPACITY * skin.opacity)
     }
 
+    /// Colour of a motion trail.
+    pub(super) fn trail(&self, is_past: bool) -> Colour {
+        // Part of the sky in the grey of the past.
+        const FADED: f32 = 0.55;
+        if is_past { self.guide.mixed(self.sky_bottom, FADED) } else { self.accent }
+    }
+
     /// Opaque colour of the bones of an onion skin.
     pub(super) fn onion_skin_bones(&self, skin: &OnionSkin) -> Colour {
         // Contrast of an opaque onion skin with the background, from 0 to 1.

@@ -7,6 +7,7 @@ use crate::kinematics::skin::{MeshSection, SkinPose, SkinnedMesh, Skinning, Tria
 use crate::session::cached::Cached;
 use crate::session::limb::ShownLimb;
 use crate::session::pops::{CursorMove, Pops, TransportPath};
+use crate::session::trail::Trail;
 
 /// Values derived from the poses at the playhead.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +19,7 @@ pub struct Evaluated {
     pops: Pops,
     /// Why each target is not reached.
     why: Cached<Vec<Cached<Vec<Diagnosis>>>>,
-    trail: Cached<Vec<Vec3>>,
+    trail: Cached<Trail>,
     posed_skin: Cached<TriangleMesh>,
     skin_areas: Cached<Option<SkinAreas>>,
 }
@@ -79,7 +80,7 @@ impl Evaluated {
         why.map_or(&[], Vec::as_slice)
     }
 
-    pub(super) fn trail(&self, sample: impl FnOnce() -> Vec<Vec3>) -> &[Vec3] {
+    pub(super) fn trail(&self, sample: impl FnOnce() -> Trail) -> &Trail {
         self.trail.get(sample)
     }
 

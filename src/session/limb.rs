@@ -1,4 +1,5 @@
 use crate::document::{Document, LengthFormat, Posed};
+use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::JointId;
 use crate::rig::LimbFrames;
 use crate::words::LimbWords;
@@ -8,6 +9,8 @@ use crate::words::LimbWords;
 pub struct ShownLimb {
     /// The joint of the limb's target.
     pub target: JointId,
+    /// Its joints.
+    pub joints: Limb,
     /// The limb in its frames.
     pub frames: LimbFrames,
     /// Words for its joints.
@@ -20,8 +23,9 @@ impl ShownLimb {
     pub fn new(posed: &Posed, selected: Option<JointId>) -> Option<Self> {
         let document = posed.document();
         let target = Self::target(document, selected)?;
+        let joints = Limb::ending_at(posed.skeleton(), target).ok()?;
         let frames = posed.limb_frames(target)?;
-        Some(Self { target, frames, words: LimbWords::of_target(&document.rig, target) })
+        Some(Self { target, joints, frames, words: LimbWords::of_target(&document.rig, target) })
     }
 
     /// [`ShownLimb::new`] without its words, which take memory.

@@ -29,6 +29,7 @@ mod skin;
 mod solve_line;
 mod solver;
 mod tour;
+mod trail;
 mod view;
 
 pub use action::Edit;
@@ -75,5 +76,6 @@ pub use solver::solvers::{SolverAction, Solvers};
 pub use solver::status::{SolverState, SolverStatus};
 pub use solver::wiggle::{WiggleTarget, WiggleView};
 pub use tour::{Goal, Guess, TourAction, TourEnd, TourState, TourStep, filled};
+pub use trail::Trail;
 pub use view::{CameraMotion, ViewDrag};
 pub use view::{View, ViewAction};

@@ -1,5 +1,3 @@
-use glam::Vec3;
-
 use crate::document::{Document, Overlay, Posed, Skin, Track, TwistReferenceKind};
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{ChainSolver, ChainTarget, Method, SubStep};
@@ -17,6 +15,7 @@ use crate::session::session::Session;
 use crate::session::solver::iterates::InsideLayers;
 use crate::session::solver::run::SolverRun;
 use crate::session::solver::wiggle::WiggleView;
+use crate::session::trail::Trail;
 
 /// State that a picture shows in addition to the document.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,9 +39,8 @@ pub struct Overlays {
     /// Poses of the limb with the same twist, measured from references of each kind; `None` if
     /// twist references are hidden or FK alone poses the limb.
     pub twist_references: Option<TwistReferencePoses>,
-    /// World positions of the hand, or of the active joint's tip, in all frames; empty if the trail
-    /// is hidden.
-    pub trail: Vec<Vec3>,
+    /// The motion of the hand, or of the active joint's tip; empty if it is hidden.
+    pub trail: Trail,
     /// The rig in frames before and after the playhead.
     pub onion_skins: Vec<OnionSkin>,
     /// The reach region of the selected target; `None` if it is hidden or not known.
@@ -107,11 +105,10 @@ impl Overlays {
     /// Overlays for a pose of a track: its motion trail, onion skins and twist references, if its
     /// display shows them.
     pub fn new(track: &Track, posed: &Posed) -> Self {
-        let has_trail = has_trail(track.document(), posed.document());
-        let mut overlays = Self {
-            trail: if has_trail { sample_trail(track, None) } else { Vec::new() },
-            ..Self::default()
-        };
+        let mut overlays = Self::default();
+        if Trail::is_shown(track.document(), posed.document()) {
+            overlays.trail = Trail::new(track, None);
+        }
         overlays.follow(track, posed);
         overlays
     }
@@ -168,9 +165,9 @@ pub(in crate::session) fn write_onion_skins(
     skins: &mut Vec<OnionSkin>,
 ) {
     /// Number of onion skins on each side of the playhead.
-    const MOST: isize = 3;
-    /// Number of frames from one skin to the next.
-    const FRAMES: f64 = 5.0;
+    const MOST: isize = 2;
+    /// Number of frames from one skin to the next, so that those of a walk stand apart.
+    const FRAMES: f64 = 8.0;
     /// Work of a pose above which only the nearest skins are shown: they are posed in every frame.
     const MOST_WORK: u64 = ChainSolver::POSE_WORK / 16;
     let document = track.document();
@@ -200,30 +197,6 @@ pub(in crate::session) fn write_onion_skins(
     skins.truncate(made);
 }
 
-/// True if a document is animated and shows its motion trail.
-pub(in crate::session) fn has_trail(document: &Document, shown: &Document) -> bool {
-    document.is_animated() && shown.display.shows(Overlay::Trail)
-}
-
-/// Samples the world positions of a joint's tip, or without a `joint` of the hand of a rig that is
-/// one limb: in every frame, or in fewer frames for a long timeline, a large skeleton or poses that
-/// take much work. Empty for another rig without a `joint`.
-pub(in crate::session) fn sample_trail(track: &Track, joint: Option<JointId>) -> Vec<Vec3> {
-    const MOST_POINTS: usize = 2000;
-    /// Maximum of the number of joints times the number of points.
-    const MOST_POSES: usize = 100_000;
-    let document = track.document();
-    let timeline = document.timeline;
-    let hand = || document.rig.sole_limb().map(|target| target.joint);
-    let Some(joint) = joint.or_else(hand) else { return Vec::new() };
-    let joints = document.skeleton().joints().len();
-    let frames = timeline.frames();
-    let stride = frames.div_ceil((MOST_POSES / joints.max(1)).clamp(1, MOST_POINTS));
-    let point = |posed: &Posed| posed.skeleton().tip(joint);
-    let time = |index| timeline.time(index * stride);
-    track.sample(frames.div_ceil(stride), time, point)
-}
-
 /// Overlays of the viewport.
 impl Session {
     /// State that the viewport shows beside the document: selection, drags, trails, solver ghosts.
@@ -241,8 +214,7 @@ impl Session {
         overlays.selection.extend_from_slice(self.selection().joints());
         overlays.hovered = self.selection().hovered();
         overlays.figure = self.selection().figure();
-        let target = self.limb_of_page().and_then(|limb| self.rig().target(limb.target));
-        overlays.limb = target.and_then(|index| self.rig().targets[index].limb_in(self.skeleton()));
+        overlays.limb = self.limb_of_page().map(|limb| limb.joints);
         overlays.concerned.clear();
         let is_figure = self.rig().sole_limb().is_none();
         if let (Some(found), true) =
@@ -258,8 +230,7 @@ impl Session {
         let limb = self.limb().map(|limb| &limb.frames);
         let transported = self.evaluated().transport_path().map(TransportPath::transported);
         overlays.twist_references = twist_reference_poses(self.posed(), limb, transported);
-        overlays.trail.clear();
-        overlays.trail.extend_from_slice(trail(self));
+        overlays.trail.clone_from(trail(self));
         write_ghosts(self.solvers().runs(), &mut overlays.ghosts);
         write_onion_skins(self.history().track(), self.posed(), &mut overlays.onion_skins);
     }
@@ -275,14 +246,14 @@ fn inside_view(session: &Session) -> Option<InsideView> {
     Some(InsideView { part, previous, before, layers })
 }
 
-/// World positions of the hand or the active joint's tip in all frames; empty if the motion trail
-/// is hidden.
-fn trail(session: &Session) -> &[Vec3] {
-    if has_trail(session.document(), session.shown()) {
+/// The motion of the hand or the active joint's tip; empty if the motion trail is hidden.
+fn trail(session: &Session) -> &Trail {
+    static NONE: Trail = Trail { points: Vec::new(), keys: Vec::new() };
+    if Trail::is_shown(session.document(), session.shown()) {
         let joint = session.selection().active();
-        session.evaluated().trail(|| sample_trail(session.history().track(), joint))
+        session.evaluated().trail(|| Trail::new(session.history().track(), joint))
     } else {
-        &[]
+        &NONE
     }
 }
 

@@ -105,7 +105,7 @@ fn a_moving_skeleton_with_targets_keys_and_trails_allocates_nothing() {
     }
     let mut bench = Bench::new(document);
     bench.session.apply(SelectAction::Joints(vec![JointId::new(joints - 1)]));
-    assert!(bench.session.overlays().trail.len() > 10, "a motion path");
+    assert!(bench.session.overlays().trail.points.len() > 10, "a motion path");
     bench.assert_takes_nothing(&[
         Step::from(PlaybackAction::SetTime(0.1)),
         PlaybackAction::SetTime(0.6).into(),

@@ -1,7 +1,7 @@
 //! Parts of a skeleton in a scene: bones, shadows and onion skins.
 
 use glam::{Vec2, Vec3};
-use ik_arm::document::{Display, Document, Overlay, SkeletonRig, Skin, Target, Theme};
+use ik_arm::document::{Display, Document, Overlay, SkeletonRig, Skin, Target, Theme, Track};
 use ik_arm::kinematics::skeleton::{Balance, Joint, JointId, Skeleton};
 use ik_arm::scene::{Line, Palette, Scene, Solid};
 use ik_arm::session::{
@@ -166,7 +166,7 @@ fn an_onion_skin_of_a_figure_is_its_skin_or_else_its_bones_with_hips() {
         // At 24 frames a second the motion starts 12 frames before.
         let names = scene.labels.iter().map(|label| scene.text(label));
         let names: Vec<&str> = names.filter(|name| name.contains(" frames ")).collect();
-        assert_eq!(names, ["10 frames before", "15 frames after"]);
+        assert_eq!(names, ["8 frames before", "16 frames after"]);
         if has_skin {
             let [own, onion_skins @ ..] = &scene.skins[..] else { panic!("no skins") };
             assert_eq!(onion_skins.len(), overlays.onion_skins.len());
@@ -232,4 +232,34 @@ fn lean(document: &mut Document) {
         pelvis.rotation.x += 0.4;
     };
     skeleton.change(JointId::new(0), tilted).expect("a pelvis");
+}
+
+#[test]
+fn a_trail_has_a_ball_at_each_key_and_its_past_is_grey() {
+    let document = documents::example("keyframes");
+    let track = Track::new(&document);
+    let (timeline, palette) = (document.timeline, Palette::new(Theme::Dark));
+    let tip = |time: f64| {
+        let posed = track.at(time);
+        let target = posed.document().rig.sole_limb().expect("a limb");
+        posed.skeleton().tip(target.joint)
+    };
+    let keys: Vec<Vec3> = document.keys.times().into_iter().map(tip).collect();
+    assert!(keys.len() >= 5);
+    for now in [timeline.start, 0.5 * timeline.end, timeline.end] {
+        let posed = track.at(now);
+        let overlays = Overlays::new(&track, &posed);
+        assert_eq!(overlays.trail.keys, keys);
+        let scene = Scene::new(&posed, &overlays, Theme::Dark);
+        let is_shown = |at: &Vec3| {
+            scene.balls.iter().any(|it| it.centre == *at && it.colour == palette.accent)
+        };
+        assert!(keys.iter().all(is_shown), "at {now} s");
+        let frames = (0..timeline.frames()).map(|frame| timeline.time(frame));
+        let past = frames.filter(|time| *time < now).count();
+        // The Pointer is longer than the way from one frame to the next.
+        let tubes = scene.guide_solids.iter().filter(|it| it.shape.length < 50.0);
+        let grey = tubes.filter(|it| it.colour != palette.accent).count();
+        assert_eq!(grey, past, "at {now} s");
+    }
 }

@@ -365,7 +365,7 @@ fn floor_under(limbs: &[[f32; 2]]) -> Vec<f32> {
     };
     let mut scene = scene(&document, Theme::Light);
     let limb = |[from, to]: &[f32; 2]| {
-        let [base, tip] = [*from, *to].map(|x| Vec3::new(x, 40.0, 50.0));
+        let [base, tip] = [*from, *to].map(|x| Vec3::new(x, 40.0, 20.0));
         Shadow { base, base_radius: 12.0, tip, tip_radius: 12.0 }
     };
     scene.shadows = limbs.iter().map(limb).collect();

@@ -26,7 +26,8 @@ const POINT_RADIUS: f32 = 0.02;
 /// Ratio of the tip's radius to the base's radius of a slender bone.
 const TAPER: f32 = 0.6;
 /// Ratio of length to base radius above which a bone is slender and tapers. Shorter bones do not
-/// taper, so that a chain of many forms one smooth body.
+/// taper, so that a chain of many forms one smooth body, and neither do the last ones, so that none
+/// ends in a spike.
 const SLENDER: f32 = 4.0;
 /// Ratio of the radius of a ghost's bone to that of the skeleton's bone.
 pub(super) const GHOST: f32 = 0.45;
@@ -82,7 +83,16 @@ impl<'a> DrawnSkeleton<'a> {
     fn tip_radius(&self, joint: JointId) -> f32 {
         let length = self.pose.base(joint).distance(self.pose.tip(joint));
         let radius = self.radius(joint);
-        if length > SLENDER * radius { radius * TAPER } else { radius }
+        let tapers = length > SLENDER * radius && !self.is_leaf(joint);
+        if tapers { radius * TAPER } else { radius }
+    }
+
+    /// Radius of the ball at a bone's base, which covers the end of the bone before it.
+    fn ball_radius(&self, joint: JointId) -> f32 {
+        let parent = self.joints[joint.index()].parent;
+        let is_next = |it: &JointId| self.pose.tip(*it) == self.pose.base(joint);
+        let before = parent.filter(is_next).map_or(0.0, |parent| self.tip_radius(parent));
+        1.1 * self.radius(joint).max(before)
     }
 
     /// Greatest stiffness of a joint's angles; 1 if it is locked.
@@ -141,7 +151,7 @@ impl<'a> DrawnSkeleton<'a> {
             scene.balls.push(Ball { centre: base, radius, colour });
         } else {
             let colour = scene.palette.joint;
-            scene.balls.push(Ball { centre: base, radius: radius * 1.1, colour });
+            scene.balls.push(Ball { centre: base, radius: self.ball_radius(joint), colour });
         }
         if self.is_leaf(joint) && base != tip {
             let colour = scene.palette.joint;

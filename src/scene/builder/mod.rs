@@ -16,7 +16,7 @@ use glam::Vec3;
 use super::{Ball, Line, Palette, Planes, Scene};
 use crate::document::{Overlay, Posed, Theme};
 use crate::rig::LimbPart;
-use crate::session::{Overlays, ShownLimb};
+use crate::session::{Overlays, ShownLimb, Trail};
 use skeleton::Scratch;
 
 /// Fills scenes from documents. The builder owns the buffers for intermediate results, so that
@@ -77,7 +77,7 @@ impl SceneBuilder {
         if let Some(limb) = ShownLimb::frames(posed, overlays.selection.last().copied()) {
             limb::add_guides(scene, &limb, overlays, display);
         }
-        add_trail(scene, overlays, reach);
+        add_trail(scene, &overlays.trail, posed.time(), reach);
         scene.spare_skin_pose = None;
         scene.remove_non_finite();
     }
@@ -106,16 +106,24 @@ fn add_axes(scene: &mut Scene, reach: f32) {
     }
 }
 
-/// Adds the trail of the hand or the selected joint, with a dot for every frame.
-fn add_trail(scene: &mut Scene, overlays: &Overlays, reach: f32) {
-    // Radii of a dot and of the tube between two dots, as fractions of the rig's reach.
+/// Adds the trail of the hand or the selected joint, with a dot for every frame and a ball for every
+/// key. What is past at a time in seconds is grey, as onion skins of the past are.
+fn add_trail(scene: &mut Scene, trail: &Trail, now: f64, reach: f32) {
+    // Radii of a key, of a dot and of the tube between two dots, as fractions of the rig's reach.
+    const KEY_RADIUS: f32 = 0.012;
     const DOT_RADIUS: f32 = 0.0045;
     const TUBE_RADIUS: f32 = 0.002;
-    let colour = scene.palette.accent;
-    let [radius, tube] = [DOT_RADIUS, TUBE_RADIUS].map(|part| part * reach);
-    for ends in overlays.trail.windows(2).filter(|ends| ends[0] != ends[1]) {
-        scene.add_guide_solid(ends[0], ends[1], tube, tube, colour);
+    let palette = scene.palette;
+    let colour = |time: f64| palette.trail(time < now);
+    let [key, dot, tube] = [KEY_RADIUS, DOT_RADIUS, TUBE_RADIUS].map(|part| part * reach);
+    for ends in trail.points.windows(2).filter(|ends| ends[0].1 != ends[1].1) {
+        let [(time, from), (_, to)] = [ends[0], ends[1]];
+        scene.add_guide_solid(from, to, tube, tube, colour(time));
     }
-    let dots = overlays.trail.iter().map(|centre| Ball { centre: *centre, radius, colour });
+    let dots = trail.points.iter();
+    let dots = dots.map(|(time, at)| Ball { centre: *at, radius: dot, colour: colour(*time) });
     scene.balls.extend(dots);
+    let keys = trail.keys.iter();
+    let keys = keys.map(|at| Ball { centre: *at, radius: key, colour: palette.accent });
+    scene.balls.extend(keys);
 }

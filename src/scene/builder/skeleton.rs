@@ -165,12 +165,8 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
         // Cylinders have their targets; a free place has none.
         let is_drawn = |it: &Target| !cylinders[it.joint.index()] && !it.has_free_place();
         for (target, report) in targets.filter(|(it, _)| is_drawn(it)) {
-            // Over a skin, lines through its limbs would look like faults.
-            let is_lit = overlays
-                .selection
-                .iter()
-                .any(|it| rig.limb_target_of(*it) == rig.target(target.joint));
-            let has_pointer = is_lit || skin.is_none_or(|skin| skin.has_bones());
+            let is_of_limb = |it: &JointId| rig.limb_target_of(*it) == rig.target(target.joint);
+            let has_pointer = overlays.selection.iter().any(is_of_limb);
             drawn.add_target(scene, target, report, has_pointer);
             if target.enabled && target.is_moving() && !rig.leads_path(target) {
                 add_trail(scene, target, posed.skeleton(), posed.time());
@@ -235,7 +231,7 @@ fn add_name_of(scene: &mut Scene, onion_skin: &OnionSkin, now: &SkeletonPose, cl
         tips.max_by(|one, other| one.y.total_cmp(&other.y))
     });
     let (Some(there), Some(here)) = (there, here) else { return };
-    let is_left = (there - here).dot(scene.camera.projection(1.0).right) < 0.0;
+    let is_left = (there - here).dot(scene.camera.basis().1) < 0.0;
     let side = if is_left { LabelSide::AboveLeft } else { LabelSide::Above };
     let which = if onion_skin.past { "before" } else { "after" };
     let label = Label::new(there, clearance, side, scene.palette.text);

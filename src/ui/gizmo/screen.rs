@@ -111,7 +111,7 @@ pub(in crate::ui) fn limb_of_page(
 ) {
     let display = session.shown().display;
     let has_skin = session.rig().skin.is_some() && display.shows(Overlay::Skin);
-    let is_hidden = has_skin && !display.shows(Overlay::Bones);
+    let is_hidden = has_skin && !display.shows_bones_in_skin();
     let Some(limb) = session.limb_of_page().filter(|_| is_hidden) else { return };
     let joints = [LimbPart::Root, LimbPart::Elbow, LimbPart::Hand];
     let places = joints.map(|part| screen.place(limb.frames.origin(part)));
