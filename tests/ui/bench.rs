@@ -468,6 +468,11 @@ impl Bench {
         }
     }
 
+    /// Unfolds the sections with the formulas of a limb's triangle.
+    pub fn unfold_formulas(&mut self) {
+        self.toggle(&["Pointer", "Elbow triangle", "Law of cosines", "Positions"]);
+    }
+
     /// Shows a page of the panel on the right.
     pub fn show_tab(&mut self, tab: PanelTab) {
         self.apply([ViewAction::ShowTab(tab)]);

@@ -66,7 +66,7 @@ fn the_page_of_a_figure_names_its_limb_and_chooses_another_one() {
     let bones = |bench: &Bench| bench.session().limb_of_page().is_some();
     assert!(bones(&bench));
     bench.apply([SelectAction::Joints(vec![bench.joint("head")])]);
-    assert!(bench.says("head belongs to no limb. This page shows the one chosen above."));
+    assert!(bench.says("head belongs to no limb. This page shows the one named above."));
     assert!(bench.says("Law of cosines") && bones(&bench), "the page is not empty");
     bench.click(Role::ComboBox, "Limb");
     // The list of targets has buttons of these names, too.
@@ -84,6 +84,7 @@ fn the_page_of_a_figure_names_its_limb_and_chooses_another_one() {
 #[test]
 fn every_row_lights_up_what_it_is_about_while_the_mouse_is_over_it() {
     for mut bench in [Bench::new(), Bench::of_size(SMALL)] {
+        bench.unfold_formulas();
         let mut seen = Vec::new();
         for (name, figure) in ROWS {
             let at = row(&mut bench, name).center();
@@ -100,6 +101,7 @@ fn every_row_lights_up_what_it_is_about_while_the_mouse_is_over_it() {
 #[test]
 fn the_value_at_the_end_of_a_row_lights_up_the_same_thing() {
     let mut bench = Bench::new();
+    bench.unfold_formulas();
     let row = row(&mut bench, "Pitch theta y");
     let value = Pos2::new(bench.harness.ctx.content_rect().right() - 40.0, row.center().y);
     assert_eq!(hover(&mut bench, value), Some(LimbFigure::Pitch));
@@ -146,6 +148,7 @@ fn triangle(bench: &Bench) -> Rect {
 #[test]
 fn both_right_triangles_light_up_level_yaw_and_pitch() {
     let mut bench = Bench::after([ArmEdit::SetHand(Vec3::new(250.0, 150.0, 200.0))]);
+    bench.unfold_formulas();
     let name =
         "Cursor from above: x 250.0, z 200.0, level 320.2; from the side: level 320.2, y 150.0";
     bench.reveal(Role::Image, name);
@@ -199,7 +202,8 @@ fn the_hierarchy_shows_the_axes_of_its_frames_in_the_view() {
 #[test]
 fn the_law_of_cosines_is_filled_in_with_the_lengths_of_the_pose() {
     // A triangle of the sides 200, 300 and 400.
-    let bench = Bench::after([ArmEdit::SetHand(Vec3::new(240.0, 0.0, 320.0))]);
+    let mut bench = Bench::after([ArmEdit::SetHand(Vec3::new(240.0, 0.0, 320.0))]);
+    bench.unfold_formulas();
     let cosine =
         (200.0_f64.powi(2) + 400.0_f64.powi(2) - 300.0_f64.powi(2)) / (2.0 * 200.0 * 400.0);
     let angle = cosine.acos().to_degrees();
@@ -215,7 +219,8 @@ fn the_law_of_cosines_is_filled_in_with_the_lengths_of_the_pose() {
 #[test]
 fn the_error_of_the_cosine_grows_near_the_straight_arm_and_the_solvers_does_not() {
     for distance in [499.99_f32, 499.999, 100.001] {
-        let bench = Bench::after([ArmEdit::SetHand(Vec3::new(distance, 0.0, 0.0))]);
+        let mut bench = Bench::after([ArmEdit::SetHand(Vec3::new(distance, 0.0, 0.0))]);
+        bench.unfold_formulas();
         let pose = bench.session().pose();
         let exact = {
             // Heron's formula in f64.
@@ -238,7 +243,8 @@ fn the_error_of_the_cosine_grows_near_the_straight_arm_and_the_solvers_does_not(
 #[test]
 fn positions_are_those_of_the_pose_in_root_and_socket_space() {
     let hand = Vec3::new(240.0, 0.0, 320.0);
-    let bench = Bench::after([ArmEdit::SetHand(hand)]);
+    let mut bench = Bench::after([ArmEdit::SetHand(hand)]);
+    bench.unfold_formulas();
     let pose = bench.session().pose();
     let text = |point: Vec3| format!("({:.1}, {:.1}, {:.1})", point.x, point.y, point.z);
     for point in [hand, Vec3::new(pose.along, pose.out, 0.0), pose.elbow] {

@@ -53,6 +53,7 @@ fn every_control_has_a_tooltip_that_can_be_read() {
             assert!(has_tooltip(&mut bench, Role::Button, name), "{name}");
         }
         assert!(has_tooltip(&mut bench, Role::SpinButton, "Hand x value"));
+        bench.unfold_formulas();
         for name in
             ["Yaw theta z", "Distance D", "Level h c", "Sum L", "Along h e", "Elbow angle phi"]
         {
@@ -137,7 +138,12 @@ fn every_sentence_of_the_status_line_can_be_read() {
 
 #[test]
 fn nothing_moves_when_a_number_changes_its_width() {
-    let mut bench = Bench::new();
+    let unfolded = || {
+        let mut bench = Bench::new();
+        bench.unfold_formulas();
+        bench
+    };
+    let mut bench = unfolded();
     let places = |bench: &Bench| {
         let controls = SLIDERS.map(|name| bench.rect(Role::Slider, name));
         (controls, bench.viewport(), bench.rect(Role::CheckBox, "Elbow circle"))
@@ -152,7 +158,7 @@ fn nothing_moves_when_a_number_changes_its_width() {
         bench.key(Key::Escape);
         let labels = ["Yaw theta z", "Level h c", "Elbow angle phi"]
             .map(|name| bench.rect(Role::Label, name).top());
-        let fresh = Bench::new();
+        let fresh = unfolded();
         let expected = ["Yaw theta z", "Level h c", "Elbow angle phi"]
             .map(|name| fresh.rect(Role::Label, name).top());
         assert_eq!(labels, expected, "{hand}");

@@ -238,6 +238,7 @@ fn the_explain_panel_says_in_a_sentence_how_far_the_arm_reaches() {
 #[test]
 fn the_explain_panel_names_the_quantities_and_shows_their_values() {
     let mut bench = Bench::after([ArmEdit::SetHand(Vec3::new(300.0, 0.0, 400.0))]);
+    bench.unfold_formulas();
     for name in [
         "Yaw theta z",
         "Level h c",

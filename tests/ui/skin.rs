@@ -46,6 +46,7 @@ fn a_switch_gives_a_skeleton_a_skin_and_a_button_removes_it() {
     bench.choose(&["Edit", "Undo Add skin"]);
     assert!(skin(&bench).is_none());
     bench.choose(&["Edit", "Redo Add skin"]);
+    bench.toggle(&["Shape and colour"]);
     bench.reveal(Role::Button, "Remove skin");
     bench.click(Role::Button, "Remove skin");
     assert!(skin(&bench).is_none());
@@ -80,6 +81,7 @@ fn the_panel_shows_skin_bones_or_both() {
 #[test]
 fn the_list_chooses_how_joints_are_blended() {
     let mut bench = with_skin();
+    bench.toggle(&["Shape and colour"]);
     for (name, skinning) in [("Linear", Skinning::Linear), ("Spread twist", Skinning::SpreadTwist)]
     {
         bench.reveal(Role::ComboBox, "Blend");
@@ -96,6 +98,7 @@ fn a_changed_detail_or_bone_makes_the_skin_again() {
         skin(bench).expect("a skin").mesh().expect("a mesh").mesh.mesh().positions.len()
     };
     let before = vertices(&bench);
+    bench.toggle(&["Shape and colour"]);
     bench.reveal(Role::Slider, "Skin detail");
     bench.enter("Skin detail", "3");
     let finer = vertices(&bench);

@@ -440,7 +440,7 @@ static STEPS: [TourStep; 13] = [
         tab: None,
         section: None,
         select: Some("left_hand"),
-        text: "Now *Whole body follows*, the switch in the corner of the view, is on: where an arm is \
+        text: "Now *Whole body follows*, the switch below the targets, is on: where an arm is \
             too short, it pulls its shoulder along. All joints up to the pelvis share the motion, \
             stiff ones give less, and the feet, whose targets weigh most, stay where they are.",
         guess: Guess {

@@ -14,7 +14,7 @@ use super::parts::Parts;
 use super::widgets;
 use crate::document::Overlay;
 use crate::session::{Actions, DisplayEdit, LimbFigure, PanelTab, Session, ViewAction};
-pub(super) use explain::triangle;
+pub(super) use explain::{globe_legend, triangle};
 use limb::LimbTarget;
 pub(super) use skeleton::{ADD_TARGETS, BIND, may_be_person};
 

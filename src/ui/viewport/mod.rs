@@ -68,7 +68,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     view_axes(ui, rect, session, actions);
     notes::why_not_reached(ui, session, &screen, actions);
     notes::follow_mouse(ui, session, rect, actions);
-    notes::body_follows(ui, session, rect, actions);
+    notes::globe_colours(ui, session, rect);
     notes::in_the_background(ui, session, rect);
     if has_joints(session) {
         notes::how_to_add_joints(ui, session, rect, actions);

@@ -6,8 +6,9 @@ use egui::{
     Vec2, WidgetInfo, pos2, vec2,
 };
 
+use crate::document::Overlay;
 use crate::rig::LimbPart;
-use crate::session::{Actions, Session, SkinEdit, SolverEdit, TransactionAction};
+use crate::session::{Actions, Session, SkinEdit, TransactionAction};
 use crate::ui::gizmo::screen::ScreenProjection;
 use crate::ui::{panels, pose_summary, style, widgets};
 
@@ -105,8 +106,6 @@ fn moved_into(rect: Rect, room: Rect) -> Rect {
     rect.translate(least.max(Vec2::ZERO) + most.min(Vec2::ZERO))
 }
 
-/// Greatest width of the reason why a body cannot follow, in points.
-const REFUSAL: f32 = 240.0;
 /// Distance from the edges of the view, in points.
 const MARGIN: f32 = 12.0;
 
@@ -126,24 +125,19 @@ pub(super) fn follow_mouse(ui: &Ui, session: &Session, viewport: Rect, actions: 
     });
 }
 
-/// Shows the switch that lets the body follow limb targets, for a figure with such a body.
-pub(super) fn body_follows(ui: &Ui, session: &Session, viewport: Rect, actions: &mut Actions) {
-    let rig = session.rig();
-    if !rig.has_body_to_follow() || session.can_follow_mouse() {
+/// Says what the colours of the singularity globe mean.
+pub(super) fn globe_colours(ui: &Ui, session: &Session, viewport: Rect) {
+    /// Width in points.
+    const WIDTH: f32 = 184.0;
+    let is_shown = session.shown().display.shows(Overlay::SingularityGlobe);
+    let Some(limb) = session.limb().filter(|_| is_shown && session.crowd().is_none()) else {
         return;
-    }
-    let area = Area::new(Id::unique("whole body follows")).order(Order::Middle);
+    };
+    let area = Area::new(Id::unique("colours of the globe")).order(Order::Middle);
     area.fixed_pos(viewport.min + vec2(MARGIN, MARGIN)).show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).show(ui, |ui| {
-            let tooltip = "Let the rest of the body follow a hand or foot that its target takes \
-                           beyond the limb's reach";
-            let follows = rig.body_follows;
-            let changed = widgets::check_box(ui, "Whole body follows", tooltip, follows, None);
-            actions.extend(changed.map(SolverEdit::SetBodyFollows));
-            if let Some(error) = &session.posed().evaluated_skeleton().body_refused {
-                ui.set_max_width(REFUSAL);
-                ui.colored_label(style::accent(ui), format!("Not solved: {error}"));
-            }
+            ui.set_width(WIDTH);
+            panels::globe_legend(ui, limb.words.middle);
         });
     });
 }

@@ -17,6 +17,8 @@ use crate::session::{Actions, LimbFigure, SelectAction, Session, ShownLimb, Tour
 use crate::ui::widgets::Choice;
 use crate::ui::{pose_summary, widgets};
 use crate::words::LimbWords;
+pub(in crate::ui) use twist_references::globe_legend;
+
 use figures::{Lit, capital, degrees, figure_colour, length, point};
 
 /// The triangle of a limb, a sentence on its pose, and its angles and lengths. Returns the figure
@@ -31,11 +33,11 @@ pub(in crate::ui) fn triangle(
     triangle::ui(ui, limb, lit);
     caption(ui, session, limb);
     widgets::section(ui, "Hierarchy", |ui| hierarchy(ui, session, limb, lit, actions));
-    widgets::section(ui, "Pointer", |ui| pointer::ui(ui, limb, lit));
+    widgets::folded_section(ui, "Pointer", |ui| pointer::ui(ui, limb, lit));
     let title = format!("{} triangle", capital(limb.words.middle));
-    widgets::named_section(ui, "triangle", &title, |ui| triangle::quantities(ui, limb, lit));
-    widgets::section(ui, "Law of cosines", |ui| triangle::law_of_cosines(ui, limb, lit));
-    widgets::section(ui, "Positions", |ui| triangle::positions(ui, limb, lit));
+    widgets::named_folded_section(ui, "triangle", &title, |ui| triangle::quantities(ui, limb, lit));
+    widgets::folded_section(ui, "Law of cosines", |ui| triangle::law_of_cosines(ui, limb, lit));
+    widgets::folded_section(ui, "Positions", |ui| triangle::positions(ui, limb, lit));
     lit.pointed()
 }
 
@@ -124,7 +126,7 @@ fn why_this_limb(ui: &mut Ui, session: &Session) {
     let outside = selected.filter(|joint| rig.limb_target_of(*joint).is_none());
     let why = match outside.and_then(|joint| rig.skeleton.joint(joint)) {
         Some(joint) => {
-            format!("{} belongs to no limb. This page shows the one chosen above.", joint.name)
+            format!("{} belongs to no limb. This page shows the one named above.", joint.name)
         }
         None if selected.is_some() => {
             "The limb of the selected joint; its bones are coloured in the view.".to_owned()

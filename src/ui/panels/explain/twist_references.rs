@@ -25,13 +25,12 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, limb: &ShownLimb, action
         widgets::overlay_check_box(ui, session, ghosts, "Ghosts", told, None, actions);
         widgets::overlay_check_box(ui, session, globe, globe_name, globe_told, None, actions);
     });
-    if session.shown().display.shows(globe) {
-        legend(ui);
-    }
 }
 
-/// Shows the colour bar of the singularity globe, on a logarithmic scale of the gain.
-fn legend(ui: &mut Ui) {
+/// Shows the colour bar of the singularity globe, on a logarithmic scale of the gain. `middle` is
+/// the word for the middle joint of the limb.
+pub(in crate::ui) fn globe_legend(ui: &mut Ui, middle: &str) {
+    ui.label(format!("{} turn per Pointer turn", capital(middle)));
     let summary = "Gain: elbow degrees per degree of the Pointer, 0 to 8 and more";
     let (palette, end) = (style::palette(ui), Palette::MAX_GAIN.ln_1p());
     let colour = |place: f32| {

@@ -14,8 +14,9 @@ use glam::Vec3;
 
 use crate::document::{Channel, PathKind, Target, WavyRing};
 use crate::kinematics::skeleton::JointId;
-use crate::session::{Actions, JointEdit, PathEdit, Session};
+use crate::session::{Actions, JointEdit, PathEdit, Session, SolverEdit};
 use crate::ui::panels::limb::{self, LimbTarget};
+use crate::ui::style;
 use crate::ui::widgets::{self, AXES, Choice, PointSliders, Slider};
 
 pub(super) use outliner::panel as outliner;
@@ -39,11 +40,27 @@ pub(in crate::ui) fn noted(session: &Session) -> Option<Target> {
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     widgets::section(ui, "Targets", |ui| {
         targets::list(ui, session, actions);
+        body_follows(ui, session, actions);
         balance::ui(ui, session, actions);
     });
     skin::section(ui, session, actions);
-    widgets::section(ui, "Translation", |ui| place(ui, session, actions));
+    widgets::folded_section(ui, "Translation", |ui| place(ui, session, actions));
     widgets::section(ui, "Path", |ui| path(ui, session, actions));
+}
+
+/// Shows the switch that lets the body follow limb targets, for a figure with such a body.
+fn body_follows(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let rig = session.rig();
+    if !rig.has_body_to_follow() {
+        return;
+    }
+    let tooltip = "Let the rest of the body follow a hand or foot that its target takes beyond the \
+                   limb's reach";
+    let changed = widgets::check_box(ui, "Whole body follows", tooltip, rig.body_follows, None);
+    actions.extend(changed.map(SolverEdit::SetBodyFollows));
+    if let Some(error) = &session.posed().evaluated_skeleton().body_refused {
+        ui.colored_label(style::accent(ui), format!("Not solved: {error}"));
+    }
 }
 
 /// Shows the settings of the selected joint and of its target.

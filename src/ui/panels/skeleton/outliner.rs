@@ -23,8 +23,8 @@ const FOLDED_FROM: usize = 4;
 
 const NONE_SELECTED: &str = "Select a joint first";
 
-/// Shows the outliner in a panel of its own, whose height can be dragged. It is folded at first for a
-/// figure that is one limb.
+/// Shows the outliner in a panel of its own: as high as the joints of a small figure, and for others
+/// with a height that can be dragged. It is folded at first for a figure that is one limb.
 pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let is_limb = session.rig().sole_limb().is_some();
     let state = ui.make_persistent_id(("outliner", is_limb));
@@ -32,12 +32,17 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
     let [first, most] = [0.42, 0.6].map(|part| (part * ui.available_height()).max(LEAST_HEIGHT));
     // The panel around it has a margin.
     let frame = Frame::side_top_panel(ui.style());
+    let whole = AROUND + ROW * session.skeleton().joints().len() as f32;
+    let open = frame.inner_margin(Margin::symmetric(0, 4));
     let panel = match state.is_open() {
+        true if whole <= HEIGHT.min(first) => {
+            Panel::top("whole outliner").resizable(false).exact_size(whole).frame(open)
+        }
         true => Panel::top("outliner")
             .resizable(true)
             .default_size(HEIGHT.min(first))
             .size_range(LEAST_HEIGHT..=most)
-            .frame(frame.inner_margin(Margin::symmetric(0, 4))),
+            .frame(open),
         false => Panel::top("folded outliner")
             .resizable(false)
             .show_separator_line(false)
@@ -57,6 +62,8 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
 /// Least and first height of the open panel, in points.
 const LEAST_HEIGHT: f32 = 150.0;
 const HEIGHT: f32 = 308.0;
+/// Height around the tree in the open panel: title, buttons and legend, in points.
+const AROUND: f32 = 100.0;
 
 /// Shows the title and the filter, and returns what is typed there.
 fn heading(ui: &mut Ui, session: &Session, state: &mut CollapsingState) -> String {

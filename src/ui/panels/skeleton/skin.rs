@@ -53,20 +53,22 @@ fn contents(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     };
     shown(ui, session, actions);
     details(ui, session, actions);
-    skinning(ui, skin, actions);
-    match &skin.source {
-        SkinSource::Bones(bones) => shape(ui, session, skin, bones, actions),
-        SkinSource::Mesh(mesh) => {
-            morphs(ui, session, mesh, actions);
-            binding(ui, session, mesh, actions);
-            file(ui, mesh, actions);
+    if let SkinSource::Mesh(mesh) = &skin.source {
+        morphs(ui, session, mesh, actions);
+        binding(ui, session, mesh, actions);
+        file(ui, mesh, actions);
+    }
+    widgets::named_folded_section(ui, "skin settings", "Shape and colour", |ui| {
+        skinning(ui, skin, actions);
+        if let SkinSource::Bones(bones) = &skin.source {
+            shape(ui, session, skin, bones, actions);
         }
-    }
-    colour(ui, session, skin, actions);
-    summary(ui, session, skin);
-    if widgets::button(ui, "Remove skin", "Show the bones alone again", None) {
-        actions.push(SkinEdit::SetSkin(None));
-    }
+        colour(ui, session, skin, actions);
+        summary(ui, session, skin);
+        if widgets::button(ui, "Remove skin", "Show the bones alone again", None) {
+            actions.push(SkinEdit::SetSkin(None));
+        }
+    });
 }
 
 /// Shows the choice between skin, bones and both.
