@@ -56,12 +56,15 @@ picture_of_example() {
     local name=$1 frames quality=(-quality 76 -strip) file all time nth
     frames=$(mktemp -d)
     file=$frames/example.json
-    "$program" examples "$name" | without_names >"$file"
+    "$program" examples "$name" | without_names >"$frames/given.json"
+    # With the camera that frames the rig, if the example has none.
+    "$program" convert "$frames/given.json" -o "$file"
     "$program" export "$file" --size 16x10 --fps 30 -o "$frames/####.png"
     all=("$frames"/*.png)
     rm "$frames"/*.png
     if ((${#all[@]} == 1)); then
-        "$program" render "$file" --size 576x360 -o "$frames/0.png"
+        come_closer "$name" "$file" 1 >"$frames/closer.json"
+        "$program" render "$frames/closer.json" --size 576x360 -o "$frames/0.png"
         convert "$frames/0.png" -resize 288x180 "${quality[@]}" "assets/pictures/$name.jpg"
         rm -r "$frames"
         return
@@ -95,23 +98,27 @@ first() {
 }
 
 # come_closer NAME FILE TIME: prints the document with a nearer camera if its own makes the figure tiny
-# in so small a picture; that of the walk goes along, and one looks at what is above the waist.
+# in so small a picture, and looks at the figure; the camera of the walk goes along.
 come_closer() {
-    local part=1 up=0 speed=0
+    local part=1 to=(0 0 0)
     case $1 in
-        walk) part=0.6 speed=1.41 ;; # metres in a second, past the middle of its way after one
-        tadpoles) part=0.8 ;;
+        two-targets | ten-joints | pulled-apart | out-of-reach) part=0.72 ;;
+        inside-* | too-few-iterations) part=0.75 ;;
+        locked) part=0.9 ;;
+        degenerate) part=0.6 ;;
+        snake) part=0.6 to=(0.55 0 0.75) ;;
+        walk) part=0.77 to=(0 0 "$(awk "BEGIN { print 1.41 * ($3 - 1) }")") ;; # metres in a second
+        tadpoles) part=0.65 ;;
         reaching-down) part=0.85 ;;
-        looking-at-the-hand) part=0.6 up=0.3 ;;
+        looking-at-the-hand) part=0.6 to=(0 0.3 0) ;; # above the waist
     esac
-    python3 - "$2" "$3" "$part" "$up" "$speed" <<'END'
+    python3 - "$2" "$part" "${to[@]}" <<'END'
 import json, sys
 document = json.load(open(sys.argv[1]))
-time, part, up, speed = map(float, sys.argv[2:])
+part, *to = map(float, sys.argv[2:])
 if camera := document.get("camera"):
     camera["distance"] *= part
-    camera["target"][1] += up
-    camera["target"][2] += speed * (time - 1)
+    camera["target"] = [at + by for at, by in zip(camera["target"], to)]
 json.dump(document, sys.stdout)
 END
 }

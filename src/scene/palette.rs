@@ -104,7 +104,7 @@ impl Palette {
 
     /// See-through colour of an onion skin: the fainter, the farther it is from the playhead.
     pub(super) fn onion_skin(&self, skin: &OnionSkin) -> Colour {
-        const OPACITY: f32 = 0.36;
+        const OPACITY: f32 = 0.28;
         let plain = if skin.past { self.grid } else { self.accent };
         plain.with_opacity(OPACITY * skin.opacity)
     }

@@ -9,7 +9,7 @@ use super::{
     Ball, Colour, Globe, Hand, Label, LabelSide, Line, Palette, Planes, Shadow, SkinInstance,
     Solid, SphereShell,
 };
-use crate::document::{Camera, Display, Theme};
+use crate::document::{Camera, Display, Overlay, Theme};
 use crate::kinematics::Shared;
 use crate::kinematics::skin::SkinPose;
 use crate::rig::Crowd;
@@ -56,6 +56,8 @@ pub struct Scene {
     pub labels: Vec<Label>,
     /// Texts of all labels, concatenated.
     text: String,
+    /// False if labels that are added are left out.
+    pub(super) has_labels: bool,
     /// The pose of a skin of the last picture, while the scene is refilled: its memory is used
     /// again.
     pub(super) spare_skin_pose: Option<Shared<SkinPose>>,
@@ -88,6 +90,7 @@ impl Scene {
             lines: Vec::new(),
             labels: Vec::new(),
             text: String::new(),
+            has_labels: display.shows(Overlay::Labels),
             spare_skin_pose: None,
         }
     }
@@ -115,8 +118,11 @@ impl Scene {
         self.text.get(label.text.from..label.text.to).unwrap_or_default()
     }
 
-    /// Adds a label with this text.
+    /// Adds a label with this text, if the scene has labels.
     pub(super) fn add_label(&mut self, label: Label, text: Arguments<'_>) {
+        if !self.has_labels {
+            return;
+        }
         let from = self.text.len();
         // Writing to a string never fails.
         let _ = self.text.write_fmt(text);

@@ -168,6 +168,8 @@ pub(in crate::session) fn write_onion_skins(
     const MOST: isize = 2;
     /// Number of frames from one skin to the next, so that those of a walk stand apart.
     const FRAMES: f64 = 8.0;
+    /// Opacity of a skin as a fraction of that of the one before it.
+    const FAINTER: f32 = 0.65;
     /// Work of a pose above which only the nearest skins are shown: they are posed in every frame.
     const MOST_WORK: u64 = ChainSolver::POSE_WORK / 16;
     let document = track.document();
@@ -190,7 +192,7 @@ pub(in crate::session) fn write_onion_skins(
         posed.skeleton().write_pose(&mut skin.pose);
         skin.write_skin(&posed);
         let nth = place.unsigned_abs();
-        (skin.past, skin.opacity) = (place < 0, 1.0 / nth as f32);
+        (skin.past, skin.opacity) = (place < 0, FAINTER.powi(nth as i32 - 1));
         skin.frames = FRAMES as u32 * nth as u32;
         made += 1;
     }

@@ -10,8 +10,8 @@ use crate::kinematics::skeleton::JointId;
 pub struct Trail {
     /// Time in seconds and world position in each frame.
     pub points: Vec<(f64, Vec3)>,
-    /// World positions at the keys of the point's joint.
-    pub keys: Vec<Vec3>,
+    /// The same at each key of the point's joint.
+    pub keys: Vec<(f64, Vec3)>,
 }
 
 impl Clone for Trail {
@@ -52,7 +52,7 @@ impl Trail {
         let points = track.sample(frames.div_ceil(stride), time, point);
         let keys = key_times(document, joint);
         let keys = track.sample(keys.len().min(most), |index| keys[index], point);
-        Self { points, keys: keys.into_iter().map(|(_, at)| at).collect() }
+        Self { points, keys }
     }
 }
 

@@ -165,8 +165,8 @@ fn an_onion_skin_of_a_figure_is_its_skin_or_else_its_bones_with_hips() {
         assert_eq!(skin.skin.is_some(), has_skin);
         // At 24 frames a second the motion starts 12 frames before.
         let names = scene.labels.iter().map(|label| scene.text(label));
-        let names: Vec<&str> = names.filter(|name| name.contains(" frames ")).collect();
-        assert_eq!(names, ["8 frames before", "16 frames after"]);
+        let names: Vec<&str> = names.filter(|name| name.ends_with(" frames")).collect();
+        assert_eq!(names, ["−8 frames", "+8 frames", "+16 frames"]);
         if has_skin {
             let [own, onion_skins @ ..] = &scene.skins[..] else { panic!("no skins") };
             assert_eq!(onion_skins.len(), overlays.onion_skins.len());
@@ -242,24 +242,27 @@ fn a_trail_has_a_ball_at_each_key_and_its_past_is_grey() {
     let tip = |time: f64| {
         let posed = track.at(time);
         let target = posed.document().rig.sole_limb().expect("a limb");
-        posed.skeleton().tip(target.joint)
+        (time, posed.skeleton().tip(target.joint))
     };
-    let keys: Vec<Vec3> = document.keys.times().into_iter().map(tip).collect();
+    let keys: Vec<(f64, Vec3)> = document.keys.times().into_iter().map(tip).collect();
     assert!(keys.len() >= 5);
     for now in [timeline.start, 0.5 * timeline.end, timeline.end] {
         let posed = track.at(now);
         let overlays = Overlays::new(&track, &posed);
         assert_eq!(overlays.trail.keys, keys);
         let scene = Scene::new(&posed, &overlays, Theme::Dark);
-        let is_shown = |at: &Vec3| {
+        let is_shown = |(_, at): &(f64, Vec3)| {
             scene.balls.iter().any(|it| it.centre == *at && it.colour == palette.accent)
         };
         assert!(keys.iter().all(is_shown), "at {now} s");
         let frames = (0..timeline.frames()).map(|frame| timeline.time(frame));
         let past = frames.filter(|time| *time < now).count();
         // The Pointer is longer than the way from one frame to the next.
-        let tubes = scene.guide_solids.iter().filter(|it| it.shape.length < 50.0);
-        let grey = tubes.filter(|it| it.colour != palette.accent).count();
+        let short = || scene.guide_solids.iter().filter(|it| it.shape.length < 50.0);
+        let (heads, tubes): (Vec<&Solid>, Vec<&Solid>) =
+            short().partition(|it| it.shape.tip_radius == 0.0);
+        assert_eq!(heads.len(), keys.len() - 1, "an arrowhead between two keys");
+        let grey = tubes.iter().filter(|it| it.colour != palette.accent).count();
         assert_eq!(grey, past, "at {now} s");
     }
 }

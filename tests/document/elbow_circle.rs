@@ -6,7 +6,7 @@ use core::f32::consts::TAU;
 use glam::{DQuat, DVec3, Vec3};
 use ik_arm::document::{Display, Document, Overlay, Ray, Theme, Track, TwistReferenceKind};
 use ik_arm::kinematics::two_bone::TwoBone;
-use ik_arm::scene::{Palette, Scene};
+use ik_arm::scene::{Line, Scene};
 use ik_arm::session::{DragInput, Grip, Overlays, Preferences, Session, TransactionAction};
 
 use crate::common::Random;
@@ -45,8 +45,8 @@ fn every_drawn_point_has_both_limb_lengths() {
     for case in 0..1000 {
         let arm = arm(&mut random);
         let scene = scene_of(arm);
-        let colour = Palette::new(Theme::Dark).guide;
-        let circle = scene.lines.iter().filter(|line| line.colour == colour && !line.dashed);
+        let is_other = |line: &&Line| line.colour == scene.palette.accent || line.dashed;
+        let circle = scene.lines.iter().filter(|line| !is_other(line));
         let hand = (arm.root + arm.pose().hand).as_dvec3();
         let root = arm.root.as_dvec3();
         let bound = 1e-5 * f64::from(arm.bones.outer_limit());

@@ -143,7 +143,7 @@ const BAR: f32 = 12.0;
 fn is_scrolled_out(bench: &Bench, control: &Control) -> bool {
     control.name.starts_with("Joint ")
         && (control.rect.top() < bench.rect(Role::Button, "Add child").bottom()
-            || control.rect.bottom() + BAR > bench.rect(Role::Label, "by angles").top())
+            || control.rect.bottom() + BAR > bench.rect(Role::Label, "locked").top())
 }
 
 #[test]

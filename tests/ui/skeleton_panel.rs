@@ -829,15 +829,13 @@ fn the_outliner_keeps_its_height_and_folds_as_a_whole() {
 
 #[test]
 fn the_outliner_of_a_small_figure_ends_below_its_joints() {
-    let mut bench = Bench::new();
-    bench.apply([FileAction::NewFigure]);
+    let mut bench = built();
     let joints = bench.session().skeleton().joints().len();
     let first = bench.bottom_of_outliner();
     bench.apply([JointEdit::AddJoint { tip: None }]);
     assert_eq!(bench.session().skeleton().joints().len(), joints + 1);
     assert_eq!(bench.bottom_of_outliner(), first + 20.0, "a row more");
-    bench.apply([open_example("human")]);
-    bench.settle();
-    let rows = 20.0 * bench.session().skeleton().joints().len() as f32;
-    assert!(bench.bottom_of_outliner() < rows, "that of a large one scrolls");
+    let large = Bench::example("human");
+    let rows = 20.0 * large.session().skeleton().joints().len() as f32;
+    assert!(large.bottom_of_outliner() < rows, "that of a large one scrolls");
 }

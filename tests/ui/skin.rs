@@ -24,7 +24,7 @@ fn with_skin() -> Bench {
     let mut bench = chain();
     bench.reveal(Role::CheckBox, "Show skin");
     bench.click(Role::CheckBox, "Show skin");
-    bench.settle();
+    bench.toggle(&["Skin"]);
     bench
 }
 
@@ -113,6 +113,7 @@ fn a_changed_detail_or_bone_makes_the_skin_again() {
 #[test]
 fn a_dragged_thickness_is_one_undo_step() {
     let mut bench = with_skin();
+    bench.toggle(&["Shape and colour"]);
     bench.reveal(Role::Slider, "Skin thickness");
     bench.enter("Skin thickness", "1.5");
     assert_eq!(thickness(&bench), 1.5);

@@ -78,9 +78,9 @@ impl<'a> CylinderLimb<'a> {
         if let Some(pole) = posed.target_report(self.target.joint).and_then(|report| report.pole)
             && is_posing
         {
-            self.add_pole(scene, pole, display.shows(Overlay::Labels));
+            self.add_pole(scene, pole);
         }
-        if display.shows(Overlay::Labels) && rig.sole_limb().is_some() {
+        if rig.sole_limb().is_some() {
             self.add_labels(scene, |part| match part {
                 LimbPart::Elbow => display.shows(Overlay::TwistReferences),
                 LimbPart::Hand => overlays.has_handles && is_posing,
@@ -145,16 +145,14 @@ impl<'a> CylinderLimb<'a> {
     }
 
     /// Adds the pole and a dashed line from the elbow to the pole.
-    fn add_pole(&self, scene: &mut Scene, pole: Vec3, has_labels: bool) {
+    fn add_pole(&self, scene: &mut Scene, pole: Vec3) {
         let colour = scene.palette.twist_reference(TwistReferenceKind::Pole);
         let radius = TARGET_BALL * self.thickness;
         scene.guide_balls.push(Ball { centre: pole, radius, colour });
         let from = self.frames.origin(LimbPart::Elbow);
         scene.lines.push(Line { from, to: pole, colour, dashed: true });
-        if has_labels {
-            let label = Label::new(pole, radius, LabelSide::Above, colour);
-            scene.add_label(label, format_args!("Pole"));
-        }
+        let label = Label::new(pole, radius, LabelSide::Above, colour);
+        scene.add_label(label, format_args!("Pole"));
     }
 
     /// Adds a dashed line from the hand to a target out of reach, labelled with the length of the

@@ -64,11 +64,9 @@ fn add_pointer_and_limits(scene: &mut Scene, limb: &LimbFrames, display: Display
         let (transform, shape) = (limb.world(LimbPart::Pointer), limb.pointer());
         let colour = palette.guide.mixed(palette.sky_bottom, POINTER_FADED);
         scene.guide_solids.push(Solid { transform, shape, colour, winding: None });
-        if display.shows(Overlay::Labels) {
-            let tip = transform.transform_point3(Vec3::X * shape.length);
-            let label = Label::new(tip, shape.tip_radius, LabelSide::Below, palette.text);
-            scene.add_label(label, format_args!("Pointer"));
-        }
+        let tip = transform.transform_point3(Vec3::X * shape.length);
+        let label = Label::new(tip, shape.tip_radius, LabelSide::Below, palette.text);
+        scene.add_label(label, format_args!("Pointer"));
     }
     for (overlay, part, radius) in [
         (Overlay::InnerLimit, LimbPart::InnerLimit, limb.limits.inner),

@@ -58,6 +58,7 @@ impl SceneBuilder {
         };
         scene.camera = document.camera;
         scene.palette = Palette::new(theme);
+        scene.has_labels = display.shows(Overlay::Labels);
         if let Some(crowd) = overlays.crowd {
             if Scene::CROWD_RADII.contains(&crowd.bounds().1) {
                 scene.planes = Planes::around_crowd(&crowd, display);
@@ -106,8 +107,8 @@ fn add_axes(scene: &mut Scene, reach: f32) {
     }
 }
 
-/// Adds the trail of the hand or the selected joint, with a dot for every frame and a ball for every
-/// key. What is past at a time in seconds is grey, as onion skins of the past are.
+/// Adds the trail of the hand or the selected joint, with a dot for every frame, a ball for every
+/// key, and arrowheads between keys. What is past at a time in seconds is grey, as onion skins of the past are.
 fn add_trail(scene: &mut Scene, trail: &Trail, now: f64, reach: f32) {
     // Radii of a key, of a dot and of the tube between two dots, as fractions of the rig's reach.
     const KEY_RADIUS: f32 = 0.012;
@@ -124,6 +125,34 @@ fn add_trail(scene: &mut Scene, trail: &Trail, now: f64, reach: f32) {
     let dots = dots.map(|(time, at)| Ball { centre: *at, radius: dot, colour: colour(*time) });
     scene.balls.extend(dots);
     let keys = trail.keys.iter();
-    let keys = keys.map(|at| Ball { centre: *at, radius: key, colour: palette.accent });
+    let keys = keys.map(|(_, at)| Ball { centre: *at, radius: key, colour: palette.accent });
     scene.balls.extend(keys);
+    for keys in trail.keys.windows(2) {
+        add_arrowhead(scene, trail, [keys[0], keys[1]], now, reach);
+    }
+}
+
+/// Adds an arrowhead to a trail half-way between two keys, if they are far enough apart for it.
+fn add_arrowhead(
+    scene: &mut Scene,
+    trail: &Trail,
+    [(start, from), (end, to)]: [(f64, Vec3); 2],
+    now: f64,
+    reach: f32,
+) {
+    // Length and radius as fractions of the rig's reach, and least distance of the keys in lengths.
+    const LENGTH: f32 = 0.036;
+    const RADIUS: f32 = 0.011;
+    const APART: f32 = 3.0;
+    let length = LENGTH * reach;
+    let middle = 0.5 * (start + end);
+    let next = trail.points.partition_point(|(time, _)| *time <= middle);
+    let (before, after) = trail.points.split_at(next);
+    let (Some((time, at)), Some((_, next))) = (before.last(), after.first()) else { return };
+    if let Some(along) = (*next - *at).try_normalize()
+        && from.distance(to) > APART * length
+    {
+        let colour = scene.palette.trail(*time < now);
+        scene.add_guide_solid(*at, *at + along * length, RADIUS * reach, 0.0, colour);
+    }
 }

@@ -114,10 +114,6 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
     if let Some(skin) = skin {
         skin.add(scene, posed.skeleton(), overlays, display);
     }
-    let farthest = |past: bool| {
-        let of_side = overlays.onion_skins.iter().filter(move |it| it.past == past);
-        of_side.map(|it| it.frames).max()
-    };
     for onion_skin in &overlays.onion_skins {
         match (&skin, &onion_skin.skin) {
             (Some(skin), Some(pose)) => {
@@ -129,11 +125,7 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
                 drawn.posed(&onion_skin.pose).add_onion_skin(scene, colour);
             }
         }
-        // Outside of all others, so that the text covers none.
-        let is_outside = farthest(onion_skin.past) == Some(onion_skin.frames);
-        if display.shows(Overlay::Labels) && is_outside {
-            add_name_of(scene, onion_skin, drawn.pose, HEAD * drawn.reach);
-        }
+        add_name_of(scene, onion_skin, drawn.pose, ABOVE_HEAD * drawn.reach);
     }
     let all = display.shows(Overlay::FkPose);
     if all || rig.targets.iter().any(Target::is_blended) {
@@ -195,14 +187,12 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
     if let Some(region) = &overlays.reach_region {
         add_reach_region(scene, region);
     }
-    if display.shows(Overlay::Labels) {
-        let radius = |joint| match &skin {
-            Some(skin) => drawn.radius(joint).max(skin.thickness(joint) * scale),
-            None => drawn.radius(joint),
-        };
-        let has_name = |joint: JointId| !cylinders[joint.index()];
-        drawn.add_labels(scene, overlays, labelled, has_name, radius);
-    }
+    let radius = |joint| match &skin {
+        Some(skin) => drawn.radius(joint).max(skin.thickness(joint) * scale),
+        None => drawn.radius(joint),
+    };
+    let has_name = |joint: JointId| !cylinders[joint.index()];
+    drawn.add_labels(scene, overlays, labelled, has_name, radius);
 }
 
 /// Sets `depths` to the number of bones above each joint, not counting bones of zero length, and
@@ -221,8 +211,8 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, children: &mut V
     }
 }
 
-/// Radius of what is around the highest tip of a figure, as a fraction of its reach.
-const HEAD: f32 = 0.06;
+/// Distance of a name from the highest tip of an onion skin, as a fraction of the figure's reach.
+const ABOVE_HEAD: f32 = 0.015;
 
 /// Says above an onion skin which frame it is, on its side away from the pose `now`.
 fn add_name_of(scene: &mut Scene, onion_skin: &OnionSkin, now: &SkeletonPose, clearance: f32) {
@@ -233,9 +223,9 @@ fn add_name_of(scene: &mut Scene, onion_skin: &OnionSkin, now: &SkeletonPose, cl
     let (Some(there), Some(here)) = (there, here) else { return };
     let is_left = (there - here).dot(scene.camera.basis().1) < 0.0;
     let side = if is_left { LabelSide::AboveLeft } else { LabelSide::Above };
-    let which = if onion_skin.past { "before" } else { "after" };
+    let sign = if onion_skin.past { '−' } else { '+' };
     let label = Label::new(there, clearance, side, scene.palette.text);
-    scene.add_label(label, format_args!("{} frames {which}", onion_skin.frames));
+    scene.add_label(label, format_args!("{sign}{} frames", onion_skin.frames));
 }
 
 /// Sets `hands` to the hand that each joint belongs to: below a joint with three or more children, if

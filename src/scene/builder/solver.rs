@@ -289,7 +289,7 @@ impl DrawnSkeleton<'_> {
                     drawn.add_gap(scene, target.joint, target.point, colour, false);
                 }
             }
-            if is_single && display.shows(Overlay::Labels) {
+            if is_single {
                 drawn.add_iteration(scene, ghost, colour);
             }
         }

@@ -115,6 +115,9 @@ const LEAST: f32 = 1e-3;
 /// Twist in radians from which its arc is drawn.
 const LEAST_TWIST: f32 = 1e-3;
 
+/// Part of the sky in the colour of a circle, so that it stays behind the limb.
+const FADED: f32 = 0.5;
+
 /// Adds the circle with spokes to the twist reference's direction and to the elbow, and the arc of
 /// the twist between them. Where FK has a part in the pose, the elbow has no circle; without marks,
 /// and where limits of the upper joint turn the elbow aside, the circle has one spoke, to the
@@ -126,8 +129,8 @@ pub(super) fn add_circle(scene: &mut Scene, limb: &LimbFrames, has_marks: bool) 
     }
     let circle = ElbowCircle::new(limb);
     let palette = scene.palette;
-    let (guide, accent) = (palette.guide, palette.accent);
-    circle.add_arc(scene, TAU, 1.0, guide);
+    let accent = palette.accent;
+    circle.add_arc(scene, TAU, 1.0, palette.guide.mixed(palette.sky_bottom, FADED));
     let has_marks = has_marks && !limb.is_limited();
     if has_marks {
         circle.add_spoke(scene, 0.0, palette.twist_reference(posed.kind), true);

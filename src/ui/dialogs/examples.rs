@@ -44,7 +44,7 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
     });
     let chosen = chosen.inner;
     actions.extend(chosen.map(|it| ShellAction::OpenDialog(Dialog::Examples(it))));
-    let sentence = ui.allocate_exact_size(vec2(pictures_width, SENTENCE), Sense::hover()).0;
+    ui.add_space(4.0);
     let examples: Vec<Example> = Example::of(group).collect();
     let row = PICTURE.y + TITLE + GAP;
     let rows = ((window.y - FRAME) / row).floor().clamp(1.0, MOST_ROWS) as usize;
@@ -72,6 +72,7 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
         }
     });
     pictures.keep(ui);
+    let sentence = ui.allocate_exact_size(vec2(pictures_width, SENTENCE), Sense::hover()).0;
     say(ui, sentence, pointed);
 }
 

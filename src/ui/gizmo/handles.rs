@@ -101,7 +101,8 @@ impl TranslateHandles {
         }
         for (axis, colour) in axes.into_iter().enumerate() {
             if self.arrow_shows(axis) {
-                self.paint_arrow(painter, axis, look(PointHandle::Axis(axis), colour));
+                let colour = look(PointHandle::Axis(axis), colour);
+                self.paint_arrow(painter, axis, colour, ui.visuals().panel_fill);
             }
         }
         let ring = ui.visuals().strong_text_color();
@@ -122,7 +123,7 @@ impl TranslateHandles {
         ((none - mouse.distance(self.centre)) / (none - full)).clamp(0.0, 1.0)
     }
 
-    fn paint_arrow(&self, painter: &Painter, axis: usize, colour: Color32) {
+    fn paint_arrow(&self, painter: &Painter, axis: usize, colour: Color32, rim: Color32) {
         const HEAD: f32 = 12.0;
         let arrow = self.arrows[axis];
         let direction = arrow.normalized();
@@ -135,6 +136,11 @@ impl TranslateHandles {
         painter.add(Shape::convex_polygon(head, colour, Stroke::NONE));
         let beyond = tip + direction * 10.0;
         let font = FontId::proportional(13.0);
+        // A light or dark rim, so that a letter can be read on a limb.
+        let rim = rim.gamma_multiply(f32::from(colour.a()) / 255.0);
+        for off in [Vec2::RIGHT, Vec2::LEFT, Vec2::UP, Vec2::DOWN] {
+            painter.text(beyond + off, Align2::CENTER_CENTER, NAMES[axis], font.clone(), rim);
+        }
         painter.text(beyond, Align2::CENTER_CENTER, NAMES[axis], font, colour);
     }
 

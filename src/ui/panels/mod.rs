@@ -44,7 +44,9 @@ fn properties(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
     guides(ui, session, limb.is_some(), actions);
     if let Some(limb) = limb {
+        widgets::divider(ui);
         limb::more(ui, limb, actions);
+        widgets::divider(ui);
         skeleton::skin_section(ui, session, actions);
         skeleton::selected(ui, session, actions);
     }
@@ -72,10 +74,15 @@ pub(super) fn of_parts(ui: &mut Ui, session: &Session, parts: Parts, actions: &m
 }
 
 fn guides(ui: &mut Ui, session: &Session, is_limb: bool, actions: &mut Actions) {
-    widgets::section(ui, "Guides", |ui| {
-        let guides: &[Overlay] = if is_limb { &Overlay::GUIDES } else { &FIGURE_GUIDES };
-        widgets::check_boxes(ui, session, 2, guides, None, actions);
-    });
+    if is_limb {
+        widgets::section(ui, "Guides", |ui| {
+            widgets::check_boxes(ui, session, 2, &Overlay::GUIDES, None, actions);
+        });
+    } else {
+        widgets::named_folded_section(ui, "guides of a figure", "Guides", |ui| {
+            widgets::check_boxes(ui, session, 2, &FIGURE_GUIDES, None, actions);
+        });
+    }
 }
 
 /// Guides of a figure.

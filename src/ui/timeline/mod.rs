@@ -33,11 +33,13 @@ pub(in crate::ui) fn transport(ui: &mut Ui, session: &Session, actions: &mut Act
 /// rows, and for curves to be read.
 pub(in crate::ui) fn height(ui: &Ui, session: &Session) -> f32 {
     const ROWS: (usize, usize) = (5, 9);
+    const OF_CURVES: usize = 11;
     let rows = match session.preferences().curves {
-        true => ROWS.1,
+        true => OF_CURVES,
         false => rows::rows(session, &FoldedJoints::kept(ui)).len() + 1,
     };
-    rows::RULER + rows::ROW * rows.clamp(ROWS.0, ROWS.1) as f32 + 8.0
+    let most = if session.preferences().curves { OF_CURVES } else { ROWS.1 };
+    rows::RULER + rows::ROW * rows.clamp(ROWS.0, most) as f32 + 8.0
 }
 
 /// Shows the timeline.

@@ -131,6 +131,9 @@ fn play(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
 }
 
+/// Distance of a label from the field before it, in points, so that it names the one after it.
+const BEFORE_LABEL: f32 = 6.0;
+
 /// A number field with a label.
 struct TimeField<'a> {
     name: &'a str,
@@ -154,6 +157,7 @@ impl TimeField<'_> {
         set: impl Fn(f64) -> A,
     ) {
         if roomy && !self.label.is_empty() {
+            ui.add_space(BEFORE_LABEL);
             ui.add(egui::Label::new(RichText::new(self.label).weak()).selectable(false));
         }
         let Self { name, value, unit, speed, width, digits, .. } = self;

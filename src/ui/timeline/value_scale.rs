@@ -230,7 +230,9 @@ pub(super) struct ChannelCurve {
 }
 
 /// Minimum distance in points between labels.
-const BETWEEN: f32 = 20.0;
+const BETWEEN: f32 = 16.0;
+/// Distance in points from the top of a lane to its first label, below the unit.
+const BELOW_UNIT: f32 = 22.0;
 /// Distance in points between the plot and the labels.
 const GAP: f32 = 5.0;
 
@@ -264,7 +266,7 @@ pub(in crate::ui::timeline) fn axes(
             let across = Stroke::new(1.0, line.color.gamma_multiply(0.5));
             ui.painter().with_clip_rect(lane).hline(lane.x_range(), y, across);
             // The unit stands above the labels.
-            if y > lane.top() + BETWEEN && y < lane.bottom() - 6.0 {
+            if y > lane.top() + BELOW_UNIT && y < lane.bottom() - 6.0 {
                 let text = written(mark, marks.step);
                 ui.painter().text(pos2(x, y), Align2::RIGHT_CENTER, text, font.clone(), colour);
             }

@@ -68,8 +68,9 @@ pub(in crate::ui) fn colour_bar(
     }
     let font = FontId::proportional(12.0);
     for (place, text) in marks {
-        let at = pos2(bar.left() + bar.width() * place, bar.bottom() + 3.0);
+        let at = pos2(bar.left() + bar.width() * place, bar.bottom() + 4.0);
         let weak = ui.visuals().weak_text_color();
+        painter.vline(at.x, bar.bottom()..=bar.bottom() + 3.0, (1.0, weak));
         painter.text(at, Align2::CENTER_TOP, text, font.clone(), weak);
     }
     response.on_hover_text(summary);

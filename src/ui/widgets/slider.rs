@@ -46,9 +46,9 @@ pub(in crate::ui) struct Slider<'a> {
     pub channel: Option<Channel>,
 }
 
-/// Width of a label, and that of one with a single letter: the rail takes the rest.
+/// Width of a label, and that of a short one, such as a letter: the rail takes the rest.
 const LABEL_WIDTH: f32 = 60.0;
-const LETTER_WIDTH: f32 = 16.0;
+const SHORT_WIDTH: f32 = 34.0;
 const VALUE_WIDTH: f32 = 66.0;
 const HEIGHT: f32 = 22.0;
 const THUMB: f32 = 6.5;
@@ -112,12 +112,12 @@ impl Slider<'_> {
 
     fn label(&self, ui: &mut Ui, actions: &mut Actions) -> Response {
         let sense = Sense::CLICK | Sense::DRAG;
-        let width = if self.label.len() == 1 { LETTER_WIDTH } else { LABEL_WIDTH };
-        let (rect, response) = ui.allocate_exact_size(vec2(width, HEIGHT), sense);
-        let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
         let colour = self.colour.unwrap_or(ui.visuals().text_color());
         let size = TextStyle::Body.resolve(ui.style()).size;
         let text = ui.fonts_mut(|fonts| fonts.layout_job(text::layout(self.label, size, colour)));
+        let width = if text.size().x <= SHORT_WIDTH { SHORT_WIDTH } else { LABEL_WIDTH };
+        let (rect, response) = ui.allocate_exact_size(vec2(width, HEIGHT), sense);
+        let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
         let at = Align2::LEFT_CENTER.anchor_size(rect.left_center(), text.size()).min;
         let text_width = text.size().x;
         ui.painter().galley(at, text, colour);

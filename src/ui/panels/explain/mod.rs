@@ -9,7 +9,7 @@ mod reach;
 mod triangle;
 mod twist_references;
 
-use egui::{Align, Frame, Label, Layout, Margin, Pos2, RichText, Stroke, Ui, vec2};
+use egui::{Align, Label, Layout, Pos2, RichText, Stroke, Ui, vec2};
 
 use crate::document::Overlay;
 use crate::rig::LimbPart;
@@ -31,7 +31,7 @@ pub(in crate::ui) fn triangle(
     let limb = titled_limb(ui, session, actions)?;
     let lit = &mut Lit::new(session);
     triangle::ui(ui, limb, lit);
-    caption(ui, session, limb);
+    sentence(ui, session, limb);
     widgets::section(ui, "Hierarchy", |ui| hierarchy(ui, session, limb, lit, actions));
     widgets::folded_section(ui, "Pointer", |ui| pointer::ui(ui, limb, lit));
     let title = format!("{} triangle", capital(limb.words.middle));
@@ -162,18 +162,6 @@ pub(in crate::ui) fn closed_form(ui: &mut Ui, session: &Session) {
         "A longer chain has many poses with its tip at the target. A solver finds one of them step by \
          step. The solvers below do so for these two limbs, too.",
     );
-}
-
-/// Shows the sentence on a limb as the lower part of the figure's card.
-fn caption(ui: &mut Ui, session: &Session, limb: &ShownLimb) {
-    const MARGIN: f32 = 8.0;
-    let under = ui.painter().add(egui::Shape::Noop);
-    let top = ui.cursor().top();
-    let inside = Frame::NONE.inner_margin(Margin::symmetric(MARGIN as i8, 0));
-    let card = inside.show(ui, |ui| sentence(ui, session, limb)).response.rect;
-    let card = card.with_min_y(top - 2.0 * MARGIN).with_max_x(ui.max_rect().right());
-    let fill = ui.visuals().extreme_bg_color;
-    ui.painter().set(under, egui::Shape::rect_filled(card, 6.0, fill));
 }
 
 fn sentence(ui: &mut Ui, session: &Session, limb: &ShownLimb) {

@@ -30,7 +30,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, limb: &ShownLimb, action
 /// Shows the colour bar of the singularity globe, on a logarithmic scale of the gain. `middle` is
 /// the word for the middle joint of the limb.
 pub(in crate::ui) fn globe_legend(ui: &mut Ui, middle: &str) {
-    ui.label(format!("{} turn per Pointer turn", capital(middle)));
+    ui.label(format!("{} speed / Pointer speed", capital(middle)));
     let summary = "Gain: elbow degrees per degree of the Pointer, 0 to 8 and more";
     let (palette, end) = (style::palette(ui), Palette::MAX_GAIN.ln_1p());
     let colour = |place: f32| {

@@ -45,7 +45,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     });
     skin::section(ui, session, actions);
     widgets::folded_section(ui, "Translation", |ui| place(ui, session, actions));
-    widgets::section(ui, "Path", |ui| path(ui, session, actions));
+    let has_path = !session.rig().follow_paths.is_empty();
+    let id = if has_path { "Path" } else { "no path" };
+    widgets::named_section_with(ui, id, "Path", has_path, |_| (), |ui| path(ui, session, actions));
 }
 
 /// Shows the switch that lets the body follow limb targets, for a figure with such a body.

@@ -29,7 +29,7 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
     let is_limb = session.rig().sole_limb().is_some();
     let state = ui.make_persistent_id(("outliner", is_limb));
     let mut state = CollapsingState::load_with_default_open(ui, state, !is_limb);
-    let [first, most] = [0.42, 0.6].map(|part| (part * ui.available_height()).max(LEAST_HEIGHT));
+    let [first, most] = [0.42, 0.6].map(|part| whole_rows(part * ui.available_height()));
     // The panel around it has a margin.
     let frame = Frame::side_top_panel(ui.style());
     let whole = AROUND + ROW * session.skeleton().joints().len() as f32;
@@ -41,7 +41,7 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
         true => Panel::top("outliner")
             .resizable(true)
             .default_size(HEIGHT.min(first))
-            .size_range(LEAST_HEIGHT..=most)
+            .size_range(whole_rows(0.0)..=most)
             .frame(open),
         false => Panel::top("folded outliner")
             .resizable(false)
@@ -59,11 +59,16 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
     state.store(ui);
 }
 
-/// Least and first height of the open panel, in points.
-const LEAST_HEIGHT: f32 = 150.0;
-const HEIGHT: f32 = 308.0;
 /// Height around the tree in the open panel: title, buttons and legend, in points.
 const AROUND: f32 = 100.0;
+/// Least number of rows of the open panel, and its first height in points.
+const LEAST_ROWS: f32 = 3.0;
+const HEIGHT: f32 = AROUND + 10.0 * ROW;
+
+/// The height in points of a panel that ends at a whole row, at most `height`.
+fn whole_rows(height: f32) -> f32 {
+    AROUND + ROW * ((height - AROUND) / ROW).floor().max(LEAST_ROWS)
+}
 
 /// Shows the title and the filter, and returns what is typed there.
 fn heading(ui: &mut Ui, session: &Session, state: &mut CollapsingState) -> String {
@@ -355,19 +360,19 @@ fn legend(ui: &mut Ui) {
     let palette = style::palette(ui);
     let [free, posed, locked] = [palette.upper, palette.accent, palette.joint].map(style::colour);
     type MarkPainter = fn(&Painter, Pos2, Color32);
-    let marks: [(MarkPainter, Color32, &str); 4] = [
-        (free_dot, free, "by angles"),
-        (free_dot, posed, "by target"),
-        (locked_dot, locked, "locked"),
-        (target_mark, posed, "target"),
+    let marks: [(MarkPainter, Color32, &str, &str); 4] = [
+        (free_dot, free, "FK", "Posed by its own angles"),
+        (free_dot, posed, "IK", "Posed by a target"),
+        (locked_dot, locked, "locked", "Moves with its parent"),
+        (target_mark, posed, "target", "Has a target at its tip"),
     ];
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(3.0, 2.0);
-        for (mark, colour, meaning) in marks {
+        for (mark, colour, name, meaning) in marks {
             let (rect, _) = ui.allocate_exact_size(vec2(12.0, 14.0), Sense::hover());
             mark(ui.painter(), rect.center(), colour);
-            ui.label(RichText::new(meaning).weak().size(11.0));
-            ui.add_space(2.0);
+            ui.label(RichText::new(name).weak().size(11.0)).on_hover_text(meaning);
+            ui.add_space(6.0);
         }
     });
 }

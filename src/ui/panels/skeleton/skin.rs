@@ -16,14 +16,15 @@ use crate::session::{
 use crate::ui::style;
 use crate::ui::widgets::{self, Choice, Slider, plot};
 
-/// Shows the section of the skin, with a switch in its title row. It is folded at first for a figure
-/// that is one limb.
+/// Shows the section of the skin, with a switch in its title row. It is folded at first, unless the
+/// skin is a mesh, which may have to be located or bound.
 pub(in crate::ui) fn section(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let is_limb = session.rig().sole_limb().is_some();
-    let id = if is_limb { "skin of a limb" } else { "Skin" };
+    let skin = session.rig().skin.as_ref();
+    let is_mesh = skin.is_some_and(|skin| matches!(skin.source, SkinSource::Mesh(_)));
+    let id = if is_mesh { "mesh" } else { "Skin" };
     let mut aside = Actions::new();
     let switch = |ui: &mut Ui| widgets::at_right(ui, |ui| switch(ui, session, &mut aside));
-    widgets::named_section_with(ui, id, "Skin", !is_limb, switch, |ui| {
+    widgets::named_section_with(ui, id, "Skin", is_mesh, switch, |ui| {
         contents(ui, session, actions);
     });
     actions.extend(aside);

@@ -28,6 +28,9 @@ pub(in crate::ui) fn may_be_person(session: &Session) -> bool {
     session.skeleton().joints().len() > LIMBS * 3
 }
 
+/// Distance between the rows of the list, in points.
+const BETWEEN: f32 = 2.0;
+
 /// Shows the list of targets.
 pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.rig();
@@ -37,9 +40,13 @@ pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Actions)
             actions.push(TargetEdit::AddHumanoidTargets);
         }
     }
-    for (target, report) in rig.targets.iter().zip(&session.posed().evaluated_skeleton().targets) {
-        row(ui, session, target, report, actions);
-    }
+    let reports = &session.posed().evaluated_skeleton().targets;
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = BETWEEN;
+        for (target, report) in rig.targets.iter().zip(reports) {
+            row(ui, session, target, report, actions);
+        }
+    });
 }
 
 fn row(
