@@ -9,13 +9,14 @@ source scripts/setup.sh
 source scripts/window.sh
 
 pictures=docs/pictures
+example_pictures=assets/pictures
 
 main() {
     set_up virtual-display
     require_tools python3:python3
     cargo build --release --locked
     trap clean_up EXIT
-    mkdir -p "$pictures" assets/pictures
+    mkdir -p "$pictures" "$example_pictures"/{dark,light}
     mapfile -t examples < <("$program" examples | awk '{ print $1 }')
     for example in "${@:-${examples[@]}}"; do
         picture_of_example "$example"
@@ -51,9 +52,10 @@ picture_of_window() {
     shrink "$name"
 }
 
-# Frames of an example in six columns, evenly spaced in time; one frame if it stands still.
+# Pictures of an example in both themes: frames in six columns, evenly spaced in time; one frame if it
+# stands still.
 picture_of_example() {
-    local name=$1 frames quality=(-quality 76 -strip) file all time nth
+    local name=$1 frames quality=(-quality 76 -strip) file all time nth theme
     frames=$(mktemp -d)
     file=$frames/example.json
     "$program" examples "$name" | without_names >"$frames/given.json"
@@ -62,20 +64,22 @@ picture_of_example() {
     "$program" export "$file" --size 16x10 --fps 30 -o "$frames/####.png"
     all=("$frames"/*.png)
     rm "$frames"/*.png
-    if ((${#all[@]} == 1)); then
-        come_closer "$name" "$file" 1 >"$frames/closer.json"
-        "$program" render "$frames/closer.json" --size 576x360 -o "$frames/0.png"
-        convert "$frames/0.png" -resize 288x180 "${quality[@]}" "assets/pictures/$name.jpg"
-        rm -r "$frames"
-        return
-    fi
-    for nth in {10..33}; do
-        time=$(awk "BEGIN { print (${#all[@]} - 1) / 30 * (($nth - 10 + $(first "$name")) % 24) / 24 }")
-        come_closer "$name" "$file" "$time" >"$frames/closer.json"
-        "$program" render "$frames/closer.json" --time "$time" --size 576x360 -o "$frames/$nth.png"
+    for theme in dark light; do
+        if ((${#all[@]} == 1)); then
+            come_closer "$name" "$file" 1 >"$frames/closer.json"
+            "$program" render "$frames/closer.json" --theme "$theme" --size 576x360 -o "$frames/0.png"
+            convert "$frames/0.png" -resize 288x180 "${quality[@]}" "$example_pictures/$theme/$name.jpg"
+            continue
+        fi
+        for nth in {10..33}; do
+            time=$(awk "BEGIN { print (${#all[@]} - 1) / 30 * (($nth - 10 + $(first "$name")) % 24) / 24 }")
+            come_closer "$name" "$file" "$time" >"$frames/closer.json"
+            "$program" render "$frames/closer.json" --theme "$theme" --time "$time" --size 576x360 \
+                -o "$frames/$nth.png"
+        done
+        montage "$frames"/[1-3]*.png -tile 6x4 -geometry 288x180+0+0 "${quality[@]}" \
+            "$example_pictures/$theme/$name.jpg"
     done
-    montage "$frames"/*.png -tile 6x4 -geometry 288x180+0+0 "${quality[@]}" \
-        "assets/pictures/$name.jpg"
     rm -r "$frames"
 }
 
@@ -108,7 +112,7 @@ come_closer() {
         degenerate) part=0.6 ;;
         snake) part=0.6 to=(0.55 0 0.75) ;;
         walk) part=0.77 to=(0 0 "$(awk "BEGIN { print 1.41 * ($3 - 1) }")") ;; # metres in a second
-        tadpoles) part=0.65 ;;
+        tadpoles) part=0.85 ;;
         reaching-down) part=0.85 ;;
         looking-at-the-hand) part=0.6 to=(0 0.3 0) ;; # above the waist
     esac

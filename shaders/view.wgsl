@@ -33,7 +33,7 @@ const FILL_DIRECTION = vec3f(-0.842152, 0.421076, -0.336861);
 const FILL = vec3f(0.22, 0.24, 0.28);
 const LAMP_WIDTH = 0.25;
 const SKY_AMBIENT = vec3f(0.34, 0.36, 0.40);
-const GROUND_AMBIENT = vec3f(0.23, 0.22, 0.21);
+const GROUND_AMBIENT = vec3f(0.32, 0.31, 0.30);
 
 struct Ray {
     origin: vec3f,

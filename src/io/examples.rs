@@ -3,6 +3,7 @@
 use super::error::OpenError;
 use super::open::parse;
 use super::opened::{OpenOptions, Opened};
+use crate::document::Theme;
 
 /// An example document that is built into the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,9 +18,8 @@ pub struct Example {
     pub sentence: &'static str,
     /// Content of the example's file.
     pub text: &'static str,
-    /// A JPEG picture of frames of the size [`Example::FRAME_SIZE`] in rows, read like text: one
-    /// frame of an example that stands still, several of one that moves.
-    pub picture: &'static [u8],
+    /// Its pictures in the dark and in the light theme.
+    pictures: [&'static [u8]; 2],
 }
 
 /// A list of examples.
@@ -47,7 +47,10 @@ macro_rules! examples {
             title: $title,
             sentence: $sentence,
             text: include_str!(concat!("../../assets/", $folder, $name, ".json")),
-            picture: include_bytes!(concat!("../../assets/pictures/", $name, ".jpg")),
+            pictures: [
+                include_bytes!(concat!("../../assets/pictures/dark/", $name, ".jpg")),
+                include_bytes!(concat!("../../assets/pictures/light/", $name, ".jpg")),
+            ],
         },)*)*]
     };
 }
@@ -72,6 +75,16 @@ impl Example {
     pub const FRAME_SIZE: [usize; 2] = [288, 180];
     /// Frames per second at which an example's picture is played.
     pub const FRAME_RATE: f64 = 10.0;
+
+    /// A JPEG picture of frames of the size [`Example::FRAME_SIZE`] in rows, read like text: one
+    /// frame of an example that stands still, several of one that moves.
+    pub fn picture(&self, theme: Theme) -> &'static [u8] {
+        let [dark, light] = self.pictures;
+        match theme {
+            Theme::Dark => dark,
+            Theme::Light => light,
+        }
+    }
 
     /// All examples, in the order in which they are listed.
     pub const ALL: [Self; 35] = examples! {

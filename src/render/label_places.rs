@@ -109,7 +109,11 @@ impl Text {
 
     fn pen(self, side: LabelSide, lines: u8) -> Vec2 {
         let Self { point, away, width, line } = self;
-        let across = if side.is_left() { -away.x - width } else { away.x };
+        let across = match side {
+            LabelSide::Over => -0.5 * width,
+            _ if side.is_left() => -away.x - width,
+            _ => away.x,
+        };
         let farther = f32::from(lines) * line;
         let drop = if side.is_above() { -away.y - farther } else { away.y + 0.6 * line + farther };
         point + Vec2::new(across, drop)

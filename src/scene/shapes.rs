@@ -305,10 +305,12 @@ pub enum LabelSide {
     AboveLeft,
     /// Below and to the left.
     BelowLeft,
+    /// Above, in the middle.
+    Over,
 }
 
 impl LabelSide {
-    /// All sides.
+    /// The sides beside a point, at which a label may be placed if its own is taken.
     pub const ALL: [Self; 4] = [Self::Above, Self::Below, Self::AboveLeft, Self::BelowLeft];
 
     /// True if the text is to the left of the point.
@@ -318,7 +320,7 @@ impl LabelSide {
 
     /// True if the text is above the point.
     pub fn is_above(self) -> bool {
-        matches!(self, Self::Above | Self::AboveLeft)
+        matches!(self, Self::Above | Self::AboveLeft | Self::Over)
     }
 
     /// The side of the point `at` that is farthest from the directions in which `others` are seen.

@@ -38,7 +38,7 @@ struct Lit {
 }
 
 fn scene(arm: Arm, display: &[Overlay], figure: Option<LimbFigure>) -> Scene {
-    let display = Display::from_iter(display.iter().copied());
+    let display = Display::from_iter(display.iter().copied()).with(Overlay::Labels, true);
     let document = Document { display, ..arm.document() };
     let posed = document.at(0.0);
     let overlays = Overlays { figure, ..Overlays::new(&Track::new(&document), &posed) };

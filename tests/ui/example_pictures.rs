@@ -2,6 +2,7 @@
 
 use egui::accesskit::Role;
 use egui::{Key, pos2};
+use ik_arm::document::Theme;
 use ik_arm::io::{Example, ExampleGroup};
 use ik_arm::session::{Dialog, FileAction, Preferences};
 
@@ -20,8 +21,10 @@ fn is_open(bench: &Bench) -> bool {
 #[test]
 fn every_example_has_a_picture_and_those_that_move_have_several_frames() {
     let [width, height] = Example::FRAME_SIZE.map(|pixels| pixels as u32);
-    for example in Example::ALL {
-        let picture = image::load_from_memory(example.picture).expect("a picture").into_rgb8();
+    let both = |example| [(example, Theme::Dark), (example, Theme::Light)];
+    for (example, theme) in Example::ALL.into_iter().flat_map(both) {
+        let picture = image::load_from_memory(example.picture(theme)).expect("a picture");
+        let picture = picture.into_rgb8();
         assert_eq!((picture.width() % width, picture.height() % height), (0, 0), "{example:?}");
         let frames = (picture.width() / width) * (picture.height() / height);
         let document = example.open().expect("opens").document;

@@ -125,7 +125,7 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
                 drawn.posed(&onion_skin.pose).add_onion_skin(scene, colour);
             }
         }
-        add_name_of(scene, onion_skin, drawn.pose, ABOVE_HEAD * drawn.reach);
+        add_name_of(scene, onion_skin, ABOVE_HEAD * drawn.reach);
     }
     let all = display.shows(Overlay::FkPose);
     if all || rig.targets.iter().any(Target::is_blended) {
@@ -214,17 +214,12 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, children: &mut V
 /// Distance of a name from the highest tip of an onion skin, as a fraction of the figure's reach.
 const ABOVE_HEAD: f32 = 0.015;
 
-/// Says above an onion skin which frame it is, on its side away from the pose `now`.
-fn add_name_of(scene: &mut Scene, onion_skin: &OnionSkin, now: &SkeletonPose, clearance: f32) {
-    let [there, here] = [&onion_skin.pose, now].map(|pose| {
-        let tips = pose.ids().map(|joint| pose.tip(joint));
-        tips.max_by(|one, other| one.y.total_cmp(&other.y))
-    });
-    let (Some(there), Some(here)) = (there, here) else { return };
-    let is_left = (there - here).dot(scene.camera.basis().1) < 0.0;
-    let side = if is_left { LabelSide::AboveLeft } else { LabelSide::Above };
+/// Says above an onion skin which frame it is.
+fn add_name_of(scene: &mut Scene, onion_skin: &OnionSkin, clearance: f32) {
+    let tips = onion_skin.pose.ids().map(|joint| onion_skin.pose.tip(joint));
+    let Some(highest) = tips.max_by(|one, other| one.y.total_cmp(&other.y)) else { return };
     let sign = if onion_skin.past { '−' } else { '+' };
-    let label = Label::new(there, clearance, side, scene.palette.text);
+    let label = Label::new(highest, clearance, LabelSide::Over, scene.palette.text);
     scene.add_label(label, format_args!("{sign}{} frames", onion_skin.frames));
 }
 

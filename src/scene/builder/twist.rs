@@ -132,11 +132,11 @@ pub(super) fn add_circle(scene: &mut Scene, limb: &LimbFrames, has_marks: bool) 
     let accent = palette.accent;
     circle.add_arc(scene, TAU, 1.0, palette.guide.mixed(palette.sky_bottom, FADED));
     let has_marks = has_marks && !limb.is_limited();
-    if has_marks {
-        circle.add_spoke(scene, 0.0, palette.twist_reference(posed.kind), true);
+    if circle.twist > LEAST_TWIST {
+        circle.add_spoke(scene, circle.twist, accent, false);
     }
-    circle.add_spoke(scene, circle.twist, accent, false);
     if has_marks && circle.twist > LEAST_TWIST {
+        circle.add_spoke(scene, 0.0, palette.twist_reference(posed.kind), true);
         circle.add_arc(scene, circle.twist, ARC, accent);
         let at = circle.point(circle.twist / 2.0, LABEL);
         let label = Label::new(at, 0.0, LabelSide::Above, accent);

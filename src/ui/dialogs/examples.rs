@@ -10,6 +10,7 @@ use egui::{
 };
 use image::{DynamicImage, ImageFormat, RgbImage};
 
+use crate::document::Theme;
 use crate::io::{Example, ExampleGroup};
 use crate::session::{Actions, Dialog, FileAction, ShellAction};
 use crate::ui::{style, widgets};
@@ -131,6 +132,8 @@ fn card(ui: &mut Ui, example: &Example, pictures: &mut Pictures) -> Response {
 struct Pictures {
     /// The first frame of each.
     stills: HashMap<&'static str, TextureHandle>,
+    /// The theme of these pictures.
+    theme: Option<Theme>,
     /// All frames of the one that plays, and when it began.
     playing: Option<(&'static str, TextureHandle, f64)>,
 }
@@ -155,11 +158,15 @@ impl Pictures {
 
     /// Decodes the next pictures that are missing.
     fn decode_some(&mut self, ui: &Ui, examples: &[Example]) {
+        let theme = style::palette(ui).theme;
+        if self.theme != Some(theme) {
+            *self = Self { theme: Some(theme), ..Self::default() };
+        }
         let missing = examples.iter().filter(|it| !self.stills.contains_key(it.name));
         let missing: Vec<&Example> = missing.collect();
         for example in missing.iter().take(DECODED_AT_ONCE) {
             let [width, height] = Example::FRAME_SIZE.map(|pixels| pixels as u32);
-            let frames = decoded(example);
+            let frames = decoded(ui, example);
             let still = image::imageops::crop_imm(&frames, 0, 0, width, height).to_image();
             self.stills.insert(example.name, texture(ui, example, &still));
         }
@@ -183,7 +190,7 @@ impl Pictures {
         let now = ui.input(|input| input.time);
         let is_new = self.playing.as_ref().is_none_or(|(name, ..)| *name != example.name);
         if is_new {
-            let frames = texture(ui, example, &decoded(example));
+            let frames = texture(ui, example, &decoded(ui, example));
             self.playing = Some((example.name, frames, now));
         }
         let (_, frames, begun) = self.playing.as_ref()?;
@@ -201,8 +208,9 @@ impl Pictures {
 }
 
 /// All frames of an example; black if they cannot be decoded.
-fn decoded(example: &Example) -> RgbImage {
-    let decoded = image::load_from_memory_with_format(example.picture, ImageFormat::Jpeg);
+fn decoded(ui: &Ui, example: &Example) -> RgbImage {
+    let picture = example.picture(style::palette(ui).theme);
+    let decoded = image::load_from_memory_with_format(picture, ImageFormat::Jpeg);
     decoded.map_or_else(|_| RgbImage::new(1, 1), DynamicImage::into_rgb8)
 }
 

@@ -123,8 +123,9 @@ impl TranslateHandles {
         ((none - mouse.distance(self.centre)) / (none - full)).clamp(0.0, 1.0)
     }
 
-    fn paint_arrow(&self, painter: &Painter, axis: usize, colour: Color32, rim: Color32) {
+    fn paint_arrow(&self, painter: &Painter, axis: usize, colour: Color32, letter: Color32) {
         const HEAD: f32 = 12.0;
+        const DISC: f32 = 7.0;
         let arrow = self.arrows[axis];
         let direction = arrow.normalized();
         let tip = self.centre + arrow;
@@ -134,14 +135,11 @@ impl TranslateHandles {
         let aside = direction.rot90() * HEAD * 0.42;
         let head = vec![tip, neck + aside, neck - aside];
         painter.add(Shape::convex_polygon(head, colour, Stroke::NONE));
-        let beyond = tip + direction * 10.0;
-        let font = FontId::proportional(13.0);
-        // A light or dark rim, so that a letter can be read on a limb.
-        let rim = rim.gamma_multiply(f32::from(colour.a()) / 255.0);
-        for off in [Vec2::RIGHT, Vec2::LEFT, Vec2::UP, Vec2::DOWN] {
-            painter.text(beyond + off, Align2::CENTER_CENTER, NAMES[axis], font.clone(), rim);
-        }
-        painter.text(beyond, Align2::CENTER_CENTER, NAMES[axis], font, colour);
+        // On a disc, so that the letter can be read before a limb.
+        let beyond = tip + direction * (DISC + 3.0);
+        painter.circle_filled(beyond, DISC, colour);
+        let font = FontId::proportional(11.0);
+        painter.text(beyond, Align2::CENTER_CENTER, NAMES[axis], font, letter);
     }
 
     fn arrow_shows(&self, axis: usize) -> bool {

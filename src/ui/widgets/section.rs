@@ -177,9 +177,9 @@ pub(in crate::ui) fn whole_rows<T>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -
                 && (clip.bottom() - most(rect)..clip.bottom()).contains(&rect.top())
                 && rect.bottom() > clip.bottom() + 1.0
         };
-        // What holds a whole row is no row.
-        let is_row =
-            |rect: &Rect| !rects().any(|it| it.bottom() <= clip.bottom() && rect.contains_rect(it));
+        // What holds a whole row is no row; an empty place is nothing.
+        let is_whole = |it: &Rect| it.is_positive() && it.bottom() <= clip.bottom();
+        let is_row = |rect: &Rect| !rects().any(|it| is_whole(&it) && rect.contains_rect(it));
         let tops = rects().filter(is_cut).filter(is_row).map(|rect| clip.bottom() - rect.top());
         tops.fold(0.0, f32::max)
     });

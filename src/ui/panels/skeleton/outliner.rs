@@ -4,11 +4,11 @@ use std::collections::HashMap;
 
 use egui::collapsing_header::{CollapsingState, paint_default_icon};
 use egui::{
-    Align2, Color32, Frame, Key, Margin, Painter, Panel, Pos2, Rect, Response, RichText, Role,
+    Align2, Color32, Frame, Id, Key, Margin, Painter, Panel, Pos2, Rect, Response, RichText, Role,
     ScrollArea, Sense, Stroke, TextEdit, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
-use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::session::{Actions, JointEdit, SelectAction, Session};
 use crate::ui::keyboard::{focus, viewport};
 use crate::ui::widgets::{self, Icon, IconButton};
@@ -20,6 +20,8 @@ const INDENT: f32 = 13.0;
 const TRIANGLE: f32 = 14.0;
 /// Number of children from which a joint that has a parent is folded at first: fingers, for example.
 const FOLDED_FROM: usize = 4;
+/// Number of rows to which a larger tree is folded at first, so that none has to be scrolled to.
+const MOST_ROWS: usize = 10;
 
 const NONE_SELECTED: &str = "Select a joint first";
 
@@ -29,18 +31,19 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
     let is_limb = session.rig().sole_limb().is_some();
     let state = ui.make_persistent_id(("outliner", is_limb));
     let mut state = CollapsingState::load_with_default_open(ui, state, !is_limb);
-    let [first, most] = [0.42, 0.6].map(|part| whole_rows(part * ui.available_height()));
+    let [first, most] = [0.5, 0.6].map(|part| whole_rows(part * ui.available_height()));
     // The panel around it has a margin.
     let frame = Frame::side_top_panel(ui.style());
     let whole = AROUND + ROW * session.skeleton().joints().len() as f32;
+    let (_, rows) = seen_at_first(session.skeleton());
     let open = frame.inner_margin(Margin::symmetric(0, 4));
     let panel = match state.is_open() {
         true if whole <= HEIGHT.min(first) => {
             Panel::top("whole outliner").resizable(false).exact_size(whole).frame(open)
         }
-        true => Panel::top("outliner")
+        true => Panel::top(Id::unique(("outliner", rows)))
             .resizable(true)
-            .default_size(HEIGHT.min(first))
+            .default_size((AROUND + ROW * rows as f32).min(first))
             .size_range(whole_rows(0.0)..=most)
             .frame(open),
         false => Panel::top("folded outliner")
@@ -61,9 +64,9 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
 
 /// Height around the tree in the open panel: title, buttons and legend, in points.
 const AROUND: f32 = 100.0;
-/// Least number of rows of the open panel, and its first height in points.
+/// Least number of rows of the open panel, and its greatest height at first in points.
 const LEAST_ROWS: f32 = 3.0;
-const HEIGHT: f32 = AROUND + 10.0 * ROW;
+const HEIGHT: f32 = AROUND + MOST_ROWS as f32 * ROW;
 
 /// The height in points of a panel that ends at a whole row, at most `height`.
 fn whole_rows(height: f32) -> f32 {
@@ -211,10 +214,11 @@ fn rows(session: &Session, filter: &str, folds: &Folds) -> Vec<OutlinerRow> {
         targets[rig.end_of(target).index()] = Some(target.enabled);
     }
     let (found, has_found_below) = found(session, &filter);
+    let (deepest, _) = seen_at_first(session.skeleton());
     let mut rows = Vec::with_capacity(children.len());
     while let Some((joint, depth)) = open.pop() {
         let (index, below) = (joint.index(), &children[joint.index()]);
-        let is_first = depth > 0 && below.len() >= FOLDED_FROM;
+        let is_first = depth >= deepest || depth > 0 && below.len() >= FOLDED_FROM;
         let is_folded =
             filter.is_empty() && *folds.0.get(&skeleton[joint].name).unwrap_or(&is_first);
         if !is_folded {
@@ -233,6 +237,27 @@ fn rows(session: &Session, filter: &str, folds: &Folds) -> Vec<OutlinerRow> {
         });
     }
     rows
+}
+
+/// The greatest depth of the rows that are seen at first, and their number: all joints down to there
+/// are at most [`MOST_ROWS`].
+fn seen_at_first(skeleton: &Skeleton) -> (usize, usize) {
+    let mut depths = Vec::with_capacity(skeleton.joints().len());
+    let mut counts = Vec::new();
+    for joint in skeleton.joints() {
+        let depth = joint.parent.map_or(0, |parent| depths[parent.index()] + 1);
+        depths.push(depth);
+        counts.resize(counts.len().max(depth + 1), 0);
+        counts[depth] += 1;
+    }
+    let mut seen = (0, 0);
+    for (depth, count) in counts.into_iter().enumerate() {
+        if seen.1 + count > MOST_ROWS {
+            break;
+        }
+        seen = (depth, seen.1 + count);
+    }
+    seen
 }
 
 /// For each joint whether its name contains the filter, and whether that of a joint below it does; all

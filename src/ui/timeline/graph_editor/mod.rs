@@ -150,14 +150,16 @@ fn scales(
 /// components has the axis colours, any other channel a colour chosen by `index`.
 fn look(ui: &Ui, channel: Channel, index: usize) -> (Vec<Color32>, LineStyle) {
     let palette = style::palette(ui);
+    let has_axes = channel.quantity().width() == 3;
     let style = match index % 4 {
+        _ if !has_axes => LineStyle::Solid,
         0 => LineStyle::Solid,
         1 => LineStyle::dashed_loose(),
         2 => LineStyle::dashed_dense(),
         _ => LineStyle::dotted_dense(),
     };
     let colours = match channel {
-        _ if channel.quantity().width() == 3 => palette.axes.to_vec(),
+        _ if has_axes => palette.axes.to_vec(),
         _ => vec![palette.series(index)],
     };
     (colours.into_iter().map(style::colour).collect(), style)
