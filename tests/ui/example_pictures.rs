@@ -68,7 +68,7 @@ fn a_picture_tells_what_its_example_shows_and_opens_it() {
 fn the_groups_of_examples_are_pages_and_escape_closes_them() {
     let mut bench = opened();
     for group in ExampleGroup::ALL {
-        bench.click(Role::Button, group.title());
+        bench.click(Role::Tab, group.title());
         let titles: Vec<&str> = Example::of(group).map(|example| example.title).collect();
         assert!(titles.iter().all(|title| bench.shows(Role::Button, title)), "{titles:?}");
     }

@@ -212,7 +212,7 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, children: &mut V
 }
 
 /// Distance of a name from the highest tip of an onion skin, as a fraction of the figure's reach.
-const ABOVE_HEAD: f32 = 0.015;
+const ABOVE_HEAD: f32 = 0.07;
 
 /// Says above an onion skin which frame it is.
 fn add_name_of(scene: &mut Scene, onion_skin: &OnionSkin, clearance: f32) {

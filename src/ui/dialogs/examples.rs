@@ -39,11 +39,7 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
     let pictures_width = columns as f32 * (PICTURE.x + GAP) - GAP;
     ui.set_width(pictures_width + BAR);
     let groups = ExampleGroup::ALL.map(|it| (it, it.title(), "Show the examples of this group"));
-    let chosen = ui.scope(|ui| {
-        ui.set_max_width(pictures_width);
-        widgets::segments(ui, group, &groups)
-    });
-    let chosen = chosen.inner;
+    let chosen = widgets::tabs(ui, group, &groups);
     actions.extend(chosen.map(|it| ShellAction::OpenDialog(Dialog::Examples(it))));
     ui.add_space(4.0);
     let examples: Vec<Example> = Example::of(group).collect();

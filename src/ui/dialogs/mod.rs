@@ -123,7 +123,7 @@ fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
 }
 
 /// Opacity, of 255, of what darkens the window behind a modal one.
-const BACKDROP: u8 = 190;
+const BACKDROP: u8 = 215;
 
 /// Shows `contents` in a modal window, with a cross that closes it if there is nothing to answer.
 /// Returns whether the cross was pressed.

@@ -20,8 +20,9 @@ const INDENT: f32 = 13.0;
 const TRIANGLE: f32 = 14.0;
 /// Number of children from which a joint that has a parent is folded at first: fingers, for example.
 const FOLDED_FROM: usize = 4;
-/// Number of rows to which a larger tree is folded at first, so that none has to be scrolled to.
-const MOST_ROWS: usize = 10;
+/// Number of rows to which a larger tree is folded at first, so that none has to be scrolled to; fewer
+/// in a low window.
+const MOST_ROWS: usize = 12;
 
 const NONE_SELECTED: &str = "Select a joint first";
 
@@ -35,7 +36,8 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
     // The panel around it has a margin.
     let frame = Frame::side_top_panel(ui.style());
     let whole = AROUND + ROW * session.skeleton().joints().len() as f32;
-    let (_, rows) = seen_at_first(session.skeleton());
+    let most_rows = ((HEIGHT.min(first) - AROUND) / ROW) as usize;
+    let (deepest, rows) = seen_at_first(session.skeleton(), most_rows);
     let open = frame.inner_margin(Margin::symmetric(0, 4));
     let panel = match state.is_open() {
         true if whole <= HEIGHT.min(first) => {
@@ -56,7 +58,7 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
         if state.is_open() {
             buttons(ui, session, actions);
             ui.add_space(4.0);
-            tree(ui, session, &filter, actions);
+            tree(ui, session, &filter, deepest, actions);
         }
     });
     state.store(ui);
@@ -127,11 +129,12 @@ struct OutlinerRow {
     target: Option<bool>,
 }
 
-fn tree(ui: &mut Ui, session: &Session, filter: &str, actions: &mut Actions) {
+/// Shows the tree, at first down to the depth `deepest`.
+fn tree(ui: &mut Ui, session: &Session, filter: &str, deepest: usize, actions: &mut Actions) {
     let kept = ui.make_persistent_id("folded joints");
     let mut folds: Folds = ui.data(|data| data.get_temp(kept)).unwrap_or_default();
     unfold_above_new(ui, session, &mut folds);
-    let rows = rows(session, filter, &folds);
+    let rows = rows(session, filter, deepest, &folds);
     // Contents that were higher than the panel would make it grow.
     let whole = ui.available_rect_before_wrap();
     let lines = if whole.width() < ONE_LINE { 2.0 } else { 1.0 };
@@ -196,7 +199,7 @@ fn unfold_above_new(ui: &Ui, session: &Session, folds: &mut Folds) {
 
 /// Rows in depth-first order, so that children follow their parent: all that are not in a folded
 /// joint or, with a filter, those that it finds and the joints above them.
-fn rows(session: &Session, filter: &str, folds: &Folds) -> Vec<OutlinerRow> {
+fn rows(session: &Session, filter: &str, deepest: usize, folds: &Folds) -> Vec<OutlinerRow> {
     let filter = filter.trim().to_lowercase();
     let skeleton = session.skeleton();
     let mut children = vec![Vec::new(); skeleton.joints().len()];
@@ -214,7 +217,6 @@ fn rows(session: &Session, filter: &str, folds: &Folds) -> Vec<OutlinerRow> {
         targets[rig.end_of(target).index()] = Some(target.enabled);
     }
     let (found, has_found_below) = found(session, &filter);
-    let (deepest, _) = seen_at_first(session.skeleton());
     let mut rows = Vec::with_capacity(children.len());
     while let Some((joint, depth)) = open.pop() {
         let (index, below) = (joint.index(), &children[joint.index()]);
@@ -240,8 +242,8 @@ fn rows(session: &Session, filter: &str, folds: &Folds) -> Vec<OutlinerRow> {
 }
 
 /// The greatest depth of the rows that are seen at first, and their number: all joints down to there
-/// are at most [`MOST_ROWS`].
-fn seen_at_first(skeleton: &Skeleton) -> (usize, usize) {
+/// are at most `most`.
+fn seen_at_first(skeleton: &Skeleton, most: usize) -> (usize, usize) {
     let mut depths = Vec::with_capacity(skeleton.joints().len());
     let mut counts = Vec::new();
     for joint in skeleton.joints() {
@@ -252,7 +254,7 @@ fn seen_at_first(skeleton: &Skeleton) -> (usize, usize) {
     }
     let mut seen = (0, 0);
     for (depth, count) in counts.into_iter().enumerate() {
-        if seen.1 + count > MOST_ROWS {
+        if seen.1 + count > most {
             break;
         }
         seen = (depth, seen.1 + count);
