@@ -111,7 +111,7 @@ come_closer() {
         locked) part=0.9 ;;
         degenerate) part=0.6 ;;
         snake) part=0.6 to=(0.55 0 0.75) ;;
-        walk) part=0.77 to=(0 0 "$(awk "BEGIN { print 1.41 * ($3 - 1) }")") ;; # metres in a second
+        walk) part=0.69 to=(0 0 "$(awk "BEGIN { print 1.41 * ($3 - 1) }")") ;; # metres in a second
         tadpoles) part=0.85 ;;
         reaching-down) part=0.85 ;;
         looking-at-the-hand) part=0.6 to=(0 0.3 0) ;; # above the waist
