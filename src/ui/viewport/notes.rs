@@ -1,5 +1,5 @@
 //! Notes over the view: why a target is not reached, with a button that helps; the hint "Drag the
-//! hand"; the switches that let heads follow the mouse and bodies their limbs.
+//! hand"; the switch that lets heads follow the mouse; what the colours of a globe mean.
 
 use egui::{
     Align2, Area, FontId, Frame, Id, Label, Order, Pos2, Rect, RichText, Role, Sense, Stroke, Ui,
