@@ -1,4 +1,4 @@
-//! The resolution of the scene while something moves.
+//! The resolution of the scene while something moves, and at rest.
 //!
 //! The program must be smooth on a machine without a graphics card, where a software adapter draws
 //! on the processor. There the time of a frame grows with the number of its pixels: at 1280×800 on
@@ -6,6 +6,10 @@
 //! budget of 33 ms (docs/performance.md). While something moves, nobody looks at single pixels, so
 //! the scene is drawn smaller and scaled up; a tenth of a second after the last motion it is drawn
 //! in full. Labels and panels always have the full resolution.
+//!
+//! A picture at rest is looked at closely, and is drawn once. So the scene is drawn at twice the
+//! width and height after it has not changed for a while, and scaled down, which smooths its edges.
+//! This is left out where it would take long or much memory.
 //!
 //! The controller reads the durations of the frames. Two slow frames in a row lower the scale to
 //! the largest one that is predicted to fit the budget; twenty fast ones raise it by one step. The
@@ -16,6 +20,8 @@ use std::time::Duration;
 
 use web_time::Instant;
 
+use crate::render::Canvas;
+use crate::scene::Scene;
 use crate::ui::FrameTime;
 
 /// Fractions of the viewport's width and height at which the scene is drawn while it moves.
@@ -23,6 +29,17 @@ const SCALES: [f32; 5] = [1.0, 0.85, 0.7, 0.6, 0.5];
 
 /// Time without motion after which the scene is drawn at full resolution.
 const REST: Duration = Duration::from_millis(100);
+
+/// Time without any change after which the scene is drawn at [`Canvas::FINEST`].
+const STILL: Duration = Duration::from_millis(400);
+
+/// The longest time that a picture at rest may be predicted to take: longer ones would be felt by
+/// who moves the mouse again.
+const LONGEST: Duration = Duration::from_millis(250);
+
+/// The largest number of pixels of a viewport that is drawn finer. Four times as many take 0.2 GB.
+/// On a larger one the pixels are small.
+const MOST_PIXELS: u32 = 1_600_000;
 
 /// Number of slow frames in a row before the resolution is lowered.
 const SLOW_FRAMES: u32 = 2;
@@ -35,43 +52,104 @@ const FAST_FRAMES: u32 = 20;
 const SLOW: f32 = 0.85;
 const SAFE: f32 = 0.65;
 
-/// Chooses the fraction of the viewport's width and height at which the scene is drawn. While the
-/// scene moves, it is as large as a budget for the frame time allows, but not below [`SCALES`]; at
-/// rest, it is 1.
+/// How a scene differs from the one that was drawn before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SceneChange {
+    /// It is the same.
+    Nothing,
+    /// It differs, for example in what is highlighted.
+    Step,
+    /// It differs as it does in a drag, in playback or when the camera moves.
+    Motion,
+}
+
+impl SceneChange {
+    /// Compares two scenes, of which the first was drawn. `is_driven` is true while a button of the
+    /// mouse is held or the motion plays.
+    pub fn new(before: Option<&Scene>, now: Option<&Scene>, is_driven: bool) -> Self {
+        match (before, now) {
+            (Some(before), Some(now)) if before == now => Self::Nothing,
+            (Some(before), Some(now)) if is_driven || before.camera != now.camera => Self::Motion,
+            _ => Self::Step,
+        }
+    }
+}
+
+/// Chooses the ratio of the size at which the scene is drawn to the size of the viewport. While the
+/// scene moves, it is as large as a budget for the frame time allows, but not below [`SCALES`];
+/// afterwards it is 1, and at rest [`Canvas::FINEST`], where that is fast enough.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DynamicResolution {
     /// Index into [`SCALES`].
     step: usize,
     /// Time of the last motion; `None` at rest.
     moved: Option<Instant>,
+    /// Time of the last change; `None` before the first.
+    changed: Option<Instant>,
+    /// Predicted time of a frame that draws the scene at a scale of 1; `None` before the second
+    /// frame. The first one also makes shaders ready.
+    full: Option<Duration>,
+    has_drawn: bool,
+    is_small_enough: bool,
     slow: u32,
     fast: u32,
 }
 
 impl DynamicResolution {
-    /// The scale of a frame at the time `now`. Without a budget, and while nothing moves, it is 1.
-    pub fn next(&mut self, is_moving: bool, budget: Option<Duration>, now: Instant) -> f32 {
-        if is_moving {
+    /// The scale of a frame at the time `now`, for a viewport of a size in pixels. Without a budget
+    /// it is not below 1.
+    pub fn next(
+        &mut self,
+        change: SceneChange,
+        (width, height): (u32, u32),
+        budget: Option<Duration>,
+        now: Instant,
+    ) -> f32 {
+        self.is_small_enough = width.saturating_mul(height) <= MOST_PIXELS;
+        if change != SceneChange::Nothing {
+            self.changed = Some(now);
+        }
+        if change == SceneChange::Motion {
             self.moved = Some(now);
         } else if self.moved.is_some_and(|moved| now.duration_since(moved) >= REST) {
             self.moved = None;
         }
         if budget.is_none() {
-            *self = Self::default();
+            self.set_step(0);
+            self.moved = None;
         }
-        self.moved.map_or(1.0, |_| SCALES[self.step])
+        match self.moved {
+            Some(_) => SCALES[self.step],
+            None if self.may_be_finer() && self.still_in(now).is_none() => Canvas::FINEST,
+            None => 1.0,
+        }
     }
 
-    /// Time from `now` until the scene must be drawn at full resolution, unless it moves again;
-    /// `None` at rest.
+    /// Time from `now` until the scene must be drawn at a higher resolution, unless it changes
+    /// again; `None` if it has its highest.
     pub fn rests_in(&self, now: Instant) -> Option<Duration> {
-        Some((self.moved? + REST).saturating_duration_since(now))
+        let rests = self.moved.map(|moved| (moved + REST).saturating_duration_since(now));
+        rests.or_else(|| self.still_in(now).filter(|_| self.may_be_finer()))
+    }
+
+    /// Time from `now` until the scene has not changed for [`STILL`]; `None` from then on.
+    fn still_in(&self, now: Instant) -> Option<Duration> {
+        let left = (self.changed? + STILL).saturating_duration_since(now);
+        (!left.is_zero()).then_some(left)
+    }
+
+    fn may_be_finer(&self) -> bool {
+        let predicted = self.full.map(|full| full.mul_f32(Canvas::FINEST.powi(2)));
+        self.is_small_enough && predicted.is_none_or(|time| time <= LONGEST)
     }
 
     /// Adapts the resolution to the time that a frame took, if it drew the scene at the present
     /// scale.
     pub fn measure(&mut self, frame: &FrameTime, time: Duration, budget: Option<Duration>) {
         let scale = frame.resolution_scale;
+        if frame.draws_scene && scale >= 1.0 && std::mem::replace(&mut self.has_drawn, true) {
+            self.full = Some(time.div_f32(scale * scale));
+        }
         let is_telling = frame.draws_scene && scale == SCALES[self.step];
         let Some(budget) = budget.filter(|_| is_telling) else { return };
         let used = time.as_secs_f32() / budget.as_secs_f32();
@@ -108,6 +186,10 @@ pub fn lap_timer() -> impl FnMut() -> Duration {
 mod tests {
     use super::*;
 
+    const MOTION: SceneChange = SceneChange::Motion;
+    const STEP: SceneChange = SceneChange::Step;
+    const NOTHING: SceneChange = SceneChange::Nothing;
+    const SIZE: (u32, u32) = (724, 711);
     const BUDGET: Option<Duration> = Some(Duration::from_millis(33));
 
     /// Numbers from 0 to 1, the same on every run.
@@ -131,7 +213,7 @@ mod tests {
         let now = Instant::now();
         let mut scales = Vec::new();
         for noise in numbers().take(frames) {
-            let scale = resolution.next(true, BUDGET, now);
+            let scale = resolution.next(MOTION, SIZE, BUDGET, now);
             let time = (fixed + in_full * scale * scale) * (0.9 + 0.2 * noise);
             resolution.measure(&drawn(scale), Duration::from_secs_f32(time / 1000.0), BUDGET);
             scales.push(scale);
@@ -173,7 +255,7 @@ mod tests {
         let mut resolution = DynamicResolution::default();
         let now = Instant::now();
         let mut draw = |milliseconds| {
-            let scale = resolution.next(true, BUDGET, now);
+            let scale = resolution.next(MOTION, SIZE, BUDGET, now);
             resolution.measure(&drawn(scale), Duration::from_millis(milliseconds), BUDGET);
             scale
         };
@@ -188,12 +270,12 @@ mod tests {
         let mut resolution = DynamicResolution::default();
         let now = Instant::now();
         for _ in 0..4 {
-            let scale = resolution.next(true, BUDGET, now);
+            let scale = resolution.next(MOTION, SIZE, BUDGET, now);
             resolution.measure(&drawn(scale), Duration::from_millis(90), BUDGET);
             let panels = FrameTime { draws_scene: false, ..drawn(scale) };
             resolution.measure(&panels, Duration::from_millis(9), BUDGET);
         }
-        assert!(resolution.next(true, BUDGET, now) < 1.0);
+        assert!(resolution.next(MOTION, SIZE, BUDGET, now) < 1.0);
     }
 
     #[test]
@@ -202,23 +284,55 @@ mod tests {
         let start = Instant::now();
         let at = |milliseconds| start + Duration::from_millis(milliseconds);
         assert_eq!(resolution.rests_in(at(0)), None);
-        assert_eq!(resolution.next(false, BUDGET, at(0)), 1.0);
-        assert_eq!(resolution.next(true, BUDGET, at(10)), 0.5);
-        assert_eq!(resolution.next(false, BUDGET, at(60)), 0.5);
+        assert_eq!(resolution.next(STEP, SIZE, BUDGET, at(0)), 1.0);
+        assert_eq!(resolution.next(MOTION, SIZE, BUDGET, at(10)), 0.5);
+        assert_eq!(resolution.next(NOTHING, SIZE, BUDGET, at(60)), 0.5);
         assert_eq!(resolution.rests_in(at(60)), Some(Duration::from_millis(50)));
-        assert_eq!(resolution.next(true, BUDGET, at(100)), 0.5);
+        assert_eq!(resolution.next(MOTION, SIZE, BUDGET, at(100)), 0.5);
         assert_eq!(resolution.rests_in(at(250)), Some(Duration::ZERO));
-        assert_eq!(resolution.next(false, BUDGET, at(200)), 1.0);
-        assert_eq!(resolution.rests_in(at(200)), None);
+        assert_eq!(resolution.next(NOTHING, SIZE, BUDGET, at(200)), 1.0);
     }
 
     #[test]
-    fn without_a_budget_the_scene_is_always_drawn_in_full() {
+    fn a_scene_that_stays_the_same_is_drawn_finer_once() {
+        let mut resolution = DynamicResolution::default();
+        let start = Instant::now();
+        let at = |milliseconds| start + Duration::from_millis(milliseconds);
+        assert_eq!(resolution.next(MOTION, SIZE, BUDGET, at(0)), 1.0);
+        assert_eq!(resolution.next(NOTHING, SIZE, BUDGET, at(100)), 1.0);
+        assert_eq!(resolution.rests_in(at(100)), Some(Duration::from_millis(300)));
+        assert_eq!(resolution.next(NOTHING, SIZE, BUDGET, at(400)), Canvas::FINEST);
+        assert_eq!(resolution.rests_in(at(400)), None);
+        assert_eq!(resolution.next(STEP, SIZE, BUDGET, at(500)), 1.0, "a highlight");
+        assert_eq!(resolution.rests_in(at(500)), Some(STILL));
+        assert_eq!(resolution.next(NOTHING, SIZE, BUDGET, at(900)), Canvas::FINEST);
+    }
+
+    #[test]
+    fn a_scene_that_would_take_long_or_much_memory_is_not_drawn_finer() {
+        let start = Instant::now();
+        let scale_at_rest = |milliseconds: &[u64], size| {
+            let mut resolution = DynamicResolution::default();
+            for time in milliseconds {
+                resolution.next(STEP, size, BUDGET, start);
+                resolution.measure(&drawn(1.0), Duration::from_millis(*time), BUDGET);
+            }
+            let scale = resolution.next(NOTHING, size, BUDGET, start + STILL);
+            assert_eq!(resolution.rests_in(start + STILL), None);
+            scale
+        };
+        assert_eq!(scale_at_rest(&[900, 60], SIZE), 2.0, "the first frame does not count");
+        assert_eq!(scale_at_rest(&[9, 70], SIZE), 1.0);
+        assert_eq!(scale_at_rest(&[9, 9], (1360, 1100)), 2.0);
+        assert_eq!(scale_at_rest(&[9, 9], (3840, 2160)), 1.0);
+    }
+
+    #[test]
+    fn without_a_budget_the_scene_is_never_drawn_smaller() {
         let mut resolution = DynamicResolution { step: 4, ..DynamicResolution::default() };
         let now = Instant::now();
-        assert_eq!(resolution.next(true, None, now), 1.0);
+        assert_eq!(resolution.next(MOTION, SIZE, None, now), 1.0);
         resolution.measure(&drawn(1.0), Duration::from_secs(1), None);
-        assert_eq!(resolution.next(true, None, now), 1.0);
-        assert_eq!(resolution.rests_in(now), None);
+        assert_eq!(resolution.next(MOTION, SIZE, None, now), 1.0);
     }
 }

@@ -5,14 +5,13 @@ use web_time::Instant;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 
 use super::background;
-use super::dynamic_resolution::lap_timer;
+use super::dynamic_resolution::{SceneChange, lap_timer};
 use super::error::GraphicsError;
 use super::event::UserEvent;
 use super::graphics::{Graphics, guarded};
 use super::platform;
 use super::present::Presented;
 use super::window::{AppWindow, Repaint};
-use crate::scene::Scene;
 use crate::session::{Actions, Effect, InspectAction, ReachAction, Session};
 use crate::ui::{self, FrameTime, style};
 
@@ -185,8 +184,9 @@ impl AppWindow {
         let budget = session.preferences().frame_budget.time();
         let held = self.egui.egui_ctx().input(|input| input.pointer.any_down());
         let is_driven = held || session.playback().is_playing();
-        let is_moving = moves(graphics.drawn_scene(), self.scene.as_ref(), is_driven);
-        frame.resolution_scale = self.dynamic_resolution.next(is_moving, budget, Instant::now());
+        let change = SceneChange::new(graphics.drawn_scene(), self.scene.as_ref(), is_driven);
+        frame.resolution_scale =
+            self.dynamic_resolution.next(change, pixels, budget, Instant::now());
         frame.scene += lap();
         let panels = self.egui.egui_ctx().tessellate(shapes, scale);
         frame.panels += lap();
@@ -220,13 +220,4 @@ impl AppWindow {
             Ok(presented)
         })
     }
-}
-
-/// True if a scene that differs from the one drawn before is a moment of a motion: the camera
-/// moves, or `is_driven` by a held mouse button or playback.
-fn moves(before: Option<&Scene>, now: Option<&Scene>, is_driven: bool) -> bool {
-    let (Some(before), Some(now)) = (before, now) else {
-        return false;
-    };
-    before.camera != now.camera || (is_driven && before != now)
 }

@@ -122,7 +122,7 @@ impl Graphics {
     /// Draws the scene, unless the canvas shows it already. Returns the numbers of things in the
     /// scene and of bytes uploaded by this call. Keeps the drawn scene and leaves the previous
     /// scene in `scene`, to be refilled. `scale` is in pixels per point; `resolution_scale` is the
-    /// fraction of the width and height at which the scene is drawn.
+    /// ratio of the size at which the scene is drawn to the size of the viewport.
     pub fn draw_scene(
         &mut self,
         scene: &mut Scene,
@@ -138,11 +138,12 @@ impl Graphics {
             self.picture.canvas = Canvas::new(&self.gpu, width, height);
             self.picture.is_drawn = false;
         }
-        let has_same_scale = self.picture.canvas.resolution_scale() == resolution_scale;
+        let drawn_scale = self.picture.canvas.resolution_scale();
+        self.picture.canvas.set_resolution_scale(&self.gpu, resolution_scale);
+        let has_same_scale = self.picture.canvas.resolution_scale() == drawn_scale;
         if self.picture.is_drawn && has_same_scale && self.picture.scene.as_ref() == Some(scene) {
             return Counts { uploaded: 0, ..self.renderer.counts() };
         }
-        self.picture.canvas.set_resolution_scale(&self.gpu, resolution_scale);
         let canvas = &self.picture.canvas;
         self.renderer.upload(&self.gpu, scene, canvas, scale);
         let crowd_error = self.renderer.crowd_times().err();

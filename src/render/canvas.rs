@@ -5,8 +5,8 @@ use super::readback::{ReadError, fetch};
 
 /// Render target: an image, and multisampled colour and depth buffers.
 ///
-/// While something moves, the scene may be drawn at a smaller size and enlarged, which takes less
-/// time: see [`Self::set_resolution_scale`].
+/// The scene may be drawn at a smaller size and enlarged, which takes less time, or at a larger one
+/// and reduced, which smooths edges: see [`Self::set_resolution_scale`].
 #[derive(Debug)]
 pub struct Canvas {
     width: u32,
@@ -15,8 +15,8 @@ pub struct Canvas {
     pub(super) colour: wgpu::TextureView,
     /// Buffers of the image's size.
     full: SampleBuffers,
-    /// Buffers for smaller pictures, kept for the next time; `None` before the first.
-    smaller: Option<SmallerPicture>,
+    /// Buffers for pictures of another size, kept for the next time; `None` before the first.
+    scaled: Option<ScaledPicture>,
     resolution_scale: f32,
 }
 
@@ -27,9 +27,9 @@ pub(super) struct SampleBuffers {
     pub depth: wgpu::TextureView,
 }
 
-/// A picture that is drawn smaller than the image and then enlarged.
+/// A picture that is drawn smaller or larger than the image, and then scaled to its size.
 #[derive(Debug)]
-struct SmallerPicture {
+struct ScaledPicture {
     size: (u32, u32),
     colour: wgpu::TextureView,
     samples: SampleBuffers,
@@ -41,6 +41,9 @@ impl Canvas {
     pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
     pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
     pub(super) const SAMPLES: u32 = 4;
+    /// The largest ratio of the size at which the scene is drawn to the size of the image: each
+    /// pixel is the mean of four, each with four samples.
+    pub const FINEST: f32 = 2.0;
 
     /// Creates a canvas of a size in pixels. Both sides are clamped to the range from 1 to
     /// [`Gpu::longest_side`].
@@ -50,22 +53,25 @@ impl Canvas {
         let image = texture(gpu, "canvas image", Self::FORMAT, 1, (width, height));
         let colour = image.create_view(&Default::default());
         let full = SampleBuffers::new(gpu, (width, height));
-        Self { width, height, image, colour, full, smaller: None, resolution_scale: 1.0 }
+        Self { width, height, image, colour, full, scaled: None, resolution_scale: 1.0 }
     }
 
-    /// Sets the fraction of the image's width and height at which the scene is drawn, from 1 / 8 to
-    /// 1. A smaller picture is enlarged, and labels are drawn over it in full.
+    /// Sets the ratio of the size at which the scene is drawn to the size of the image, from 1 / 8
+    /// to [`Self::FINEST`]. Neither side becomes longer than [`Gpu::longest_side`]. The picture is
+    /// scaled to the size of the image, and labels are drawn over it.
     pub fn set_resolution_scale(&mut self, gpu: &Gpu, resolution_scale: f32) {
         const LEAST: f32 = 0.125;
-        self.resolution_scale = resolution_scale.clamp(LEAST, 1.0);
+        let longest = self.width.max(self.height);
+        let most = (gpu.longest_side() as f32 / longest as f32).min(Self::FINEST);
+        self.resolution_scale = resolution_scale.clamp(LEAST, most);
         let size = self.drawn_size();
-        let has_size = self.smaller.as_ref().is_some_and(|smaller| smaller.size == size);
-        if self.resolution_scale < 1.0 && !has_size {
-            self.smaller = Some(SmallerPicture::new(gpu, size));
+        let has_size = self.scaled.as_ref().is_some_and(|scaled| scaled.size == size);
+        if self.resolution_scale != 1.0 && !has_size {
+            self.scaled = Some(ScaledPicture::new(gpu, size));
         }
     }
 
-    /// Fraction of the image's width and height at which the scene is drawn.
+    /// Ratio of the size at which the scene is drawn to the size of the image.
     pub fn resolution_scale(&self) -> f32 {
         self.resolution_scale
     }
@@ -78,16 +84,16 @@ impl Canvas {
 
     /// The buffers in which the scene is drawn.
     pub(super) fn samples(&self) -> &SampleBuffers {
-        self.smaller().map_or(&self.full, |smaller| &smaller.samples)
+        self.scaled().map_or(&self.full, |scaled| &scaled.samples)
     }
 
     /// View of the picture in the size in which the scene is drawn, for shaders that sample it.
     pub fn drawn(&self) -> &wgpu::TextureView {
-        self.smaller().map_or(&self.colour, |smaller| &smaller.colour)
+        self.scaled().map_or(&self.colour, |scaled| &scaled.colour)
     }
 
-    fn smaller(&self) -> Option<&SmallerPicture> {
-        self.smaller.as_ref().filter(|_| self.resolution_scale < 1.0)
+    fn scaled(&self) -> Option<&ScaledPicture> {
+        self.scaled.as_ref().filter(|_| self.resolution_scale != 1.0)
     }
 
     /// Width and height in pixels.
@@ -148,9 +154,9 @@ impl SampleBuffers {
     }
 }
 
-impl SmallerPicture {
+impl ScaledPicture {
     fn new(gpu: &Gpu, size: (u32, u32)) -> Self {
-        let colour = texture(gpu, "smaller picture", Canvas::FORMAT, 1, size);
+        let colour = texture(gpu, "scaled picture", Canvas::FORMAT, 1, size);
         let samples = SampleBuffers::new(gpu, size);
         Self { size, colour: colour.create_view(&Default::default()), samples }
     }

@@ -24,7 +24,7 @@ pub struct Renderer {
     spheres: Spheres,
     lines: Lines,
     labels: LabelPainter,
-    enlarger: TexturePainter,
+    scaler: TexturePainter,
     crowds: Crowds,
     skins: Skins,
     counts: Counts,
@@ -66,7 +66,7 @@ impl Renderer {
             spheres: Spheres::new(gpu, view.layout()),
             lines: Lines::new(gpu, view.layout()),
             labels: LabelPainter::new(gpu, format),
-            enlarger: TexturePainter::new(gpu, Canvas::FORMAT),
+            scaler: TexturePainter::new(gpu, Canvas::FORMAT),
             crowds: Crowds::default(),
             skins: Skins::default(),
             view,
@@ -206,11 +206,11 @@ impl Renderer {
         self.labels.draw(pass);
     }
 
-    /// Enlarges a smaller picture, and draws the labels in full.
+    /// Scales a smaller or larger picture to the size of the image, and draws the labels in full.
     fn encode_labels(&self, gpu: &Gpu, canvas: &Canvas) -> wgpu::CommandBuffer {
-        let is_smaller = canvas.resolution_scale() < 1.0;
+        let is_scaled = canvas.resolution_scale() != 1.0;
         let load =
-            if is_smaller { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
+            if is_scaled { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
         let mut encoder = gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("labels") });
@@ -224,8 +224,8 @@ impl Renderer {
             })],
             ..Default::default()
         });
-        if is_smaller {
-            self.enlarger.draw(gpu, &mut pass, canvas.drawn());
+        if is_scaled {
+            self.scaler.draw(gpu, &mut pass, canvas.drawn());
         }
         self.draw_labels(&mut pass);
         drop(pass);

@@ -26,7 +26,8 @@ pub struct FrameTime {
     /// Time from the start of the previous frame to the start of this one; `None` unless the
     /// previous frame requested this one without a delay.
     pub interval: Option<Duration>,
-    /// Fraction of the viewport's width and height at which the scene is drawn, from 0 to 1.
+    /// Ratio of the size at which the scene is drawn to the size of the viewport, from 0 to
+    /// [`Canvas::FINEST`](crate::render::Canvas::FINEST).
     pub resolution_scale: f32,
     /// True if the scene is drawn, false if it is unchanged and the panels alone are.
     pub draws_scene: bool,

@@ -1,4 +1,5 @@
-//! Scenes drawn at a smaller size and enlarged, as the window does while something moves.
+//! Scenes drawn at a smaller size and enlarged, as the window does while something moves, and at a
+//! larger one, as it does at rest.
 
 use ik_arm::document::{Camera, Display, Document, Overlay, Theme};
 use ik_arm::kinematics::two_bone::TwoBone;
@@ -13,7 +14,7 @@ use pollster::block_on;
 use crate::common::pictures::difference;
 
 const SIZE: (u32, u32) = (724, 712);
-const SCALES: [f32; 4] = [0.85, 0.7, 0.6, 0.5];
+const SCALES: [f32; 5] = [2.0, 0.85, 0.7, 0.6, 0.5];
 
 struct Bench {
     gpu: Gpu,
@@ -69,12 +70,12 @@ fn mean(image: &RgbaImage, [left, top]: [u32; 2], side: u32) -> [f64; 3] {
 }
 
 #[test]
-fn a_picture_in_full_after_smaller_ones_is_the_same_bit_for_bit() {
+fn a_picture_in_full_after_others_is_the_same_bit_for_bit() {
     let scene = scene(Theme::Dark, GUIDES.into_iter().chain([Overlay::Labels]));
     let expected = Bench::new().draw(&scene, 1.0);
     let mut bench = Bench::new();
     for scale in SCALES {
-        assert!(bench.draw(&scene, scale) != expected, "it is smaller at {scale}");
+        assert!(bench.draw(&scene, scale) != expected, "it differs at {scale}");
         assert!(bench.draw(&scene, 1.0) == expected, "after {scale}");
     }
 }
@@ -103,6 +104,19 @@ fn colours_do_not_jump_when_the_picture_sharpens() {
             }
         }
     }
+}
+
+#[test]
+fn edges_of_a_finer_picture_have_more_tones() {
+    let mut bench = Bench::new();
+    let scene = scene(Theme::Light, []);
+    let mut tones = |scale| {
+        let picture = bench.draw(&scene, scale);
+        let blues: std::collections::BTreeSet<_> = picture.pixels().map(|pixel| pixel[2]).collect();
+        blues.len()
+    };
+    let (full, finer) = (tones(1.0), tones(Canvas::FINEST));
+    assert!(finer > full, "{finer} tones of blue, {full} in full");
 }
 
 #[test]
@@ -147,7 +161,7 @@ fn labels_are_as_sharp_as_in_full() {
 #[test]
 fn a_resolution_scale_is_limited() {
     let mut bench = Bench::new();
-    for (wanted, scale) in [(2.0, 1.0), (0.0, 0.125), (-1.0, 0.125), (0.6, 0.6)] {
+    for (wanted, scale) in [(2.0, 2.0), (3.0, 2.0), (0.0, 0.125), (-1.0, 0.125), (0.6, 0.6)] {
         bench.canvas.set_resolution_scale(&bench.gpu, wanted);
         assert_eq!(bench.canvas.resolution_scale(), scale);
         assert_eq!(bench.canvas.size(), SIZE);

@@ -75,7 +75,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, machine: &Machine) {
         let per_second = times.per_second().map(|it| it.round() as u64);
         row(ui, "Frames per second", "Median while something moves", &count(per_second));
         let resolution_scale = times.last().map_or(1.0, |last| last.resolution_scale);
-        let tooltip = "Width and height of the drawn scene, which is enlarged to fill the view";
+        let tooltip = "Ratio of the drawn size of the scene to that of the view";
         row(ui, "Resolution", tooltip, &format!("{:.0} %", 100.0 * resolution_scale));
         let counts = machine.counts;
         let of = |part: fn(crate::render::Counts) -> u64| count(counts.map(part));
