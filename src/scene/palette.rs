@@ -62,7 +62,7 @@ impl Palette {
                 grid: Colour::rgb(0x9aa4b4).with_opacity(0.75),
                 wall: Colour::rgb(0x9aa4b4),
                 text: Colour::rgb(0xeef0f4),
-                gains: ramp([0x4d667f, 0x954f9d, 0xd63f71, 0xf76c43, 0xffa83f]),
+                gains: ramp([0x5c86b5, 0xa164b4, 0xd8487c, 0xf76c43, 0xffa83f]),
                 shadow: 0.7,
             },
             Theme::Light => Self {

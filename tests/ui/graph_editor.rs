@@ -340,6 +340,15 @@ fn degrees_and_lengths_have_lanes_below_each_other_each_with_its_unit_at_the_lef
 }
 
 #[test]
+fn a_lane_with_three_curves_is_twice_as_high_as_one_with_one() {
+    let mut arm = graph();
+    arm.apply([Action::from(KeysEdit::Key(vec![channels::HAND, channels::TWIST]))]);
+    let [degrees, millimetres] = ["Axis in degrees (deg)", "Axis in millimetres (mm)"]
+        .map(|name| arm.rect(Role::Label, name).height());
+    assert!((millimetres - 2.0 * degrees).abs() < 1.0, "{millimetres} and {degrees}");
+}
+
+#[test]
 fn of_many_curves_those_of_the_first_joint_are_drawn_until_others_are_selected() {
     let mut bench = Bench::with_timeline(LARGE);
     bench.apply([open_example("walk")]);

@@ -26,8 +26,9 @@ const MOST_COLUMNS: usize = 4;
 const MOST_ROWS: f32 = 3.0;
 /// Height of the window without the pictures.
 const FRAME: f32 = 180.0;
-/// Height of the sentence about the example under the mouse: two lines.
-const SENTENCE: f32 = 40.0;
+/// Height of a line of the sentence about the example under the mouse, which takes two lines in a narrow
+/// dialog.
+const LINE: f32 = 20.0;
 /// Number of pictures that are decoded in one frame of the window: more would be felt.
 const DECODED_AT_ONCE: usize = 2;
 
@@ -69,7 +70,9 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
         }
     });
     pictures.keep(ui);
-    let sentence = ui.allocate_exact_size(vec2(pictures_width, SENTENCE), Sense::hover()).0;
+    let lines = if columns == MOST_COLUMNS { 1.0 } else { 2.0 };
+    let size = vec2(pictures_width, LINE * lines + 4.0);
+    let sentence = ui.allocate_exact_size(size, Sense::hover()).0;
     say(ui, sentence, pointed);
 }
 

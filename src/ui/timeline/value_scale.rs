@@ -67,27 +67,40 @@ impl ValueKind {
     }
 }
 
-/// The kinds of values that are shown. Each has a lane of its own, above each other and equally high,
-/// so that no two units share a height.
+/// The number of curves of each kind of values. Each kind that is shown has a lane of its own, so that
+/// no two units share a height. Lanes with several curves are higher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Lanes([bool; 3]);
+pub(super) struct Lanes([usize; 3]);
 
 impl Lanes {
     pub fn of(channels: &[Channel]) -> Self {
-        Self(ValueKind::ALL.map(|kind| channels.iter().any(|it| ValueKind::of(*it) == kind)))
+        Self(ValueKind::ALL.map(|kind| {
+            let channels = channels.iter().filter(|it| ValueKind::of(**it) == kind);
+            channels.map(|channel| channel.quantity().width()).sum()
+        }))
     }
 
     /// The kinds with a lane, from the top.
     pub fn kinds(self) -> impl Iterator<Item = ValueKind> {
-        ValueKind::ALL.into_iter().filter(move |kind| self.0[kind.index()])
+        ValueKind::ALL.into_iter().filter(move |kind| self.0[kind.index()] > 0)
     }
 
     /// The lane of a kind in a plot; the whole plot for a kind that is not shown.
     pub fn lane(self, kind: ValueKind, plot: Rect) -> Rect {
-        let Some(nth) = self.kinds().position(|it| it == kind) else { return plot };
-        let height = plot.height() / self.kinds().count() as f32;
-        let top = plot.top() + nth as f32 * height;
-        Rect::from_x_y_ranges(plot.x_range(), top..=top + height)
+        if !self.kinds().any(|it| it == kind) {
+            return plot;
+        }
+        let above = self.kinds().take_while(|it| *it != kind);
+        let parts: f32 = self.kinds().map(|it| self.weight(it)).sum();
+        let height = plot.height() / parts;
+        let top = plot.top() + height * above.map(|it| self.weight(it)).sum::<f32>();
+        Rect::from_x_y_ranges(plot.x_range(), top..=top + height * self.weight(kind))
+    }
+
+    /// Height of a lane, relative to the others: twice as high from three curves on as with one.
+    fn weight(self, kind: ValueKind) -> f32 {
+        const MOST: usize = 3;
+        1.0 + self.0[kind.index()].min(MOST) as f32
     }
 }
 

@@ -12,6 +12,8 @@ mod twist_references;
 use egui::{Align, Label, Layout, Pos2, RichText, Stroke, Ui, vec2};
 
 use crate::document::Overlay;
+use crate::kinematics::soft_reach::ReachLimits;
+use crate::kinematics::two_bone::Reach;
 use crate::rig::LimbPart;
 use crate::session::{Actions, LimbFigure, SelectAction, Session, ShownLimb, TourState};
 use crate::ui::widgets::Choice;
@@ -170,6 +172,11 @@ fn sentence(ui: &mut Ui, session: &Session, limb: &ShownLimb) {
     ui.allocate_ui(vec2(ui.available_width(), height), |ui| {
         ui.set_min_height(height);
         ui.label(pose_summary::sentence_on_limb(session, limb));
+        if limb.frames.pose().reach == Some(Reach::Reached) {
+            let ReachLimits { inner, outer } = limb.frames.limits;
+            let [inner, outer] = [inner, outer].map(|it| limb.lengths().show(it));
+            ui.weak(format!("Its reach is {inner} to {outer}."));
+        }
     });
 }
 

@@ -114,6 +114,7 @@ impl DopeSheet<'_> {
         ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, Stroke::new(1.0, line));
         match row {
             DopeSheetRow::All => {
+                let name = name.with_min_x(name.left() + INDENT);
                 rows::line(ui, name, "All", ui.visuals().strong_text_color());
             }
             DopeSheetRow::Joint { joint, is_folded } => self.heading(ui, joint, is_folded, name),
@@ -165,12 +166,9 @@ impl DopeSheet<'_> {
         let visuals = ui.visuals();
         let is_lit = selected || response.hovered();
         let colour = if is_lit { visuals.strong_text_color() } else { visuals.text_color() };
-        if is_below {
-            let short = labels::channel_of_joint(channel);
-            rows::line(ui, rect.with_min_x(rect.left() + 1.6 * INDENT), &short, colour);
-        } else {
-            rows::line(ui, rect, &shown, colour);
-        }
+        let indent = if is_below { 1.6 * INDENT } else { INDENT };
+        let text = if is_below { &labels::channel_of_joint(channel) } else { &shown };
+        rows::line(ui, rect.with_min_x(rect.left() + indent), text, colour);
         if response.clicked() {
             self.ruler.request_focus();
             let channels = rows::after_click(ui, session.selection().channels(), channel);
