@@ -122,8 +122,13 @@ fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
     now != before
 }
 
-/// Opacity, of 255, of what darkens the window behind a modal one.
-const BACKDROP: u8 = 215;
+/// What covers the window behind a modal one: in each theme a shade between those of its text and its
+/// panels, so that neither is seen.
+fn backdrop(is_dark: bool) -> Color32 {
+    const OPACITY: u8 = 215;
+    let [r, g, b] = if is_dark { [0, 0, 0] } else { [86, 94, 106] };
+    Color32::from_rgba_unmultiplied(r, g, b, OPACITY)
+}
 
 /// Shows `contents` in a modal window, with a cross that closes it if there is nothing to answer.
 /// Returns whether the cross was pressed.
@@ -133,7 +138,7 @@ fn modal(ui: &Ui, title: &str, has_close: bool, contents: impl FnOnce(&mut Ui)) 
     let id = Id::unique(("dialog", title.to_owned()));
     let area = Modal::default_area(id).fade_in(false);
     let modal =
-        Modal::new(id).area(area).frame(frame).backdrop_color(Color32::from_black_alpha(BACKDROP));
+        Modal::new(id).area(area).frame(frame).backdrop_color(backdrop(style.visuals.dark_mode));
     modal.show(ui.ctx(), |ui| titled(ui, title, has_close, contents)).inner
 }
 

@@ -32,7 +32,7 @@ pub(in crate::ui) fn transport(ui: &mut Ui, session: &Session, actions: &mut Act
 /// Height at first of the timeline of a document, in points: enough for its rows, up to some whole
 /// rows, and for curves to be read.
 pub(in crate::ui) fn height(ui: &Ui, session: &Session) -> f32 {
-    const ROWS: (usize, usize) = (5, 9);
+    const ROWS: (usize, usize) = (5, 7);
     const OF_CURVES: usize = 11;
     let rows = match session.preferences().curves {
         true => OF_CURVES,

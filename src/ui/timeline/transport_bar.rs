@@ -114,8 +114,8 @@ fn to_end(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 fn repeat(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let looping = session.playback().is_looping();
     let tooltip = "Repeat from the start when playback reaches the end";
-    let on = Some(looping);
-    if (IconButton { icon: Icon::Loop, name: "Loop", tooltip, on, disabled: None }).show(ui) {
+    let (on, disabled) = (Some(looping), nothing_to_play(session));
+    if (IconButton { icon: Icon::Loop, name: "Loop", tooltip, on, disabled }).show(ui) {
         actions.push(PlaybackAction::SetLooping(!looping));
     }
 }
@@ -124,11 +124,15 @@ fn play(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let playing = session.playback().is_playing();
     let (icon, name) = if playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
     let tooltip = "Play or pause (Space)";
-    let nothing = "Nothing to play: add keys at two times (K) or move a target";
-    let disabled = (!playing && !session.document().is_moving()).then_some(nothing);
-    if IconButton::new(icon, name, tooltip, disabled).show(ui) {
+    if IconButton::new(icon, name, tooltip, nothing_to_play(session)).show(ui) {
         actions.push(PlaybackAction::Play(!playing));
     }
+}
+
+/// Why the motion cannot be played; `None` if it can.
+fn nothing_to_play(session: &Session) -> Option<&'static str> {
+    let can_play = session.playback().is_playing() || session.document().is_moving();
+    (!can_play).then_some("Nothing to play: add keys at two times (K) or move a target")
 }
 
 /// Distance of a label from the field before it, in points, so that it names the one after it.

@@ -40,6 +40,7 @@ pub(in crate::ui) fn globe_legend(ui: &mut Ui, middle: &str) {
     let gains = [(0.0, "0"), (1.0, "1"), (2.0, "2"), (5.0, "5"), (Palette::MAX_GAIN, "8+")];
     let marks = gains.map(|(gain, text)| (f32::ln_1p(gain) / end, text));
     widgets::colour_bar(ui, summary, colour, &marks);
+    ui.weak("Rings on the globe: 1, 2 and 5");
 }
 
 fn table(ui: &mut Ui, limb: &ShownLimb, path: &TransportPath, actions: &mut Actions) {

@@ -166,9 +166,14 @@ impl DopeSheet<'_> {
         let visuals = ui.visuals();
         let is_lit = selected || response.hovered();
         let colour = if is_lit { visuals.strong_text_color() } else { visuals.text_color() };
+        let short = labels::channel_of_joint(channel);
         let indent = if is_below { 1.6 * INDENT } else { INDENT };
-        let text = if is_below { &labels::channel_of_joint(channel) } else { &shown };
-        rows::line(ui, rect.with_min_x(rect.left() + indent), text, colour);
+        let text = rect.with_min_x(rect.left() + indent);
+        let joint = session.document().joint_of(channel).filter(|_| !is_below);
+        match joint.and_then(|joint| session.rig().skeleton.joint(joint)) {
+            Some(joint) => rows::named(ui, text, [&joint.name, &short], colour),
+            None => rows::line(ui, text, if is_below { &short } else { &shown }, colour),
+        }
         if response.clicked() {
             self.ruler.request_focus();
             let channels = rows::after_click(ui, session.selection().channels(), channel);
