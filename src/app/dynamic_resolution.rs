@@ -31,11 +31,11 @@ const SCALES: [f32; 5] = [1.0, 0.85, 0.7, 0.6, 0.5];
 const REST: Duration = Duration::from_millis(100);
 
 /// Time without any change after which the scene is drawn at [`Canvas::FINEST`].
-const STILL: Duration = Duration::from_millis(400);
+const STILL: Duration = Duration::from_millis(150);
 
 /// The longest time that a picture at rest may be predicted to take: longer ones would be felt by
 /// who moves the mouse again.
-const LONGEST: Duration = Duration::from_millis(250);
+const LONGEST: Duration = Duration::from_millis(400);
 
 /// The largest number of pixels of a viewport that is drawn finer. Four times as many take 0.2 GB.
 /// On a larger one the pixels are small.
@@ -86,10 +86,9 @@ pub(super) struct DynamicResolution {
     moved: Option<Instant>,
     /// Time of the last change; `None` before the first.
     changed: Option<Instant>,
-    /// Predicted time of a frame that draws the scene at a scale of 1; `None` before the second
-    /// frame. The first one also makes shaders ready.
-    full: Option<Duration>,
-    has_drawn: bool,
+    /// Times of the last two frames that drew the scene in full or finer, as if it was in full; 0
+    /// before them. The faster one counts, since a frame may also wait for a shader.
+    full: [Duration; 2],
     is_small_enough: bool,
     slow: u32,
     fast: u32,
@@ -139,16 +138,16 @@ impl DynamicResolution {
     }
 
     fn may_be_finer(&self) -> bool {
-        let predicted = self.full.map(|full| full.mul_f32(Canvas::FINEST.powi(2)));
-        self.is_small_enough && predicted.is_none_or(|time| time <= LONGEST)
+        let predicted = self.full[0].min(self.full[1]).mul_f32(Canvas::FINEST.powi(2));
+        self.is_small_enough && predicted <= LONGEST
     }
 
     /// Adapts the resolution to the time that a frame took, if it drew the scene at the present
     /// scale.
     pub fn measure(&mut self, frame: &FrameTime, time: Duration, budget: Option<Duration>) {
         let scale = frame.resolution_scale;
-        if frame.draws_scene && scale >= 1.0 && std::mem::replace(&mut self.has_drawn, true) {
-            self.full = Some(time.div_f32(scale * scale));
+        if frame.draws_scene && scale >= 1.0 {
+            self.full = [self.full[1], time.div_f32(scale * scale)];
         }
         let is_telling = frame.draws_scene && scale == SCALES[self.step];
         let Some(budget) = budget.filter(|_| is_telling) else { return };
@@ -300,9 +299,9 @@ mod tests {
         let at = |milliseconds| start + Duration::from_millis(milliseconds);
         assert_eq!(resolution.next(MOTION, SIZE, BUDGET, at(0)), 1.0);
         assert_eq!(resolution.next(NOTHING, SIZE, BUDGET, at(100)), 1.0);
-        assert_eq!(resolution.rests_in(at(100)), Some(Duration::from_millis(300)));
-        assert_eq!(resolution.next(NOTHING, SIZE, BUDGET, at(400)), Canvas::FINEST);
-        assert_eq!(resolution.rests_in(at(400)), None);
+        assert_eq!(resolution.rests_in(at(100)), Some(Duration::from_millis(50)));
+        assert_eq!(resolution.next(NOTHING, SIZE, BUDGET, at(150)), Canvas::FINEST);
+        assert_eq!(resolution.rests_in(at(150)), None);
         assert_eq!(resolution.next(STEP, SIZE, BUDGET, at(500)), 1.0, "a highlight");
         assert_eq!(resolution.rests_in(at(500)), Some(STILL));
         assert_eq!(resolution.next(NOTHING, SIZE, BUDGET, at(900)), Canvas::FINEST);
@@ -321,8 +320,9 @@ mod tests {
             assert_eq!(resolution.rests_in(start + STILL), None);
             scale
         };
-        assert_eq!(scale_at_rest(&[900, 60], SIZE), 2.0, "the first frame does not count");
-        assert_eq!(scale_at_rest(&[9, 70], SIZE), 1.0);
+        assert_eq!(scale_at_rest(&[900, 60], SIZE), 2.0, "one slow frame does not count");
+        assert_eq!(scale_at_rest(&[60, 900], SIZE), 2.0);
+        assert_eq!(scale_at_rest(&[110, 110], SIZE), 1.0);
         assert_eq!(scale_at_rest(&[9, 9], (1360, 1100)), 2.0);
         assert_eq!(scale_at_rest(&[9, 9], (3840, 2160)), 1.0);
     }

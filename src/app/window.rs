@@ -126,6 +126,8 @@ impl AppWindow {
         self.machine.has_clock = graphics.has_clock();
         self.egui.set_max_texture_side(graphics.gpu.longest_side() as usize);
         self.graphics = Some(graphics);
+        // Frames of another device tell nothing about this one.
+        self.dynamic_resolution = DynamicResolution::default();
     }
 
     pub fn request_redraw(&self) {

@@ -22,7 +22,7 @@ use crate::display::Display;
 pub const SIZE: (u32, u32) = (1280, 800);
 pub const PATIENCE: Duration = Duration::from_secs(60);
 /// A screen unchanged for this long counts as settled. Shorter than the blink of a text cursor.
-const REST: Duration = Duration::from_millis(300);
+const REST: Duration = Duration::from_millis(400);
 const POLL: Duration = Duration::from_millis(50);
 
 /// The running program with its window, killed when dropped.

@@ -88,12 +88,16 @@ pub(in crate::ui) fn line(ui: &Ui, rect: Rect, text: &str, colour: Color32) {
     ui.painter().galley(at, galley, colour);
 }
 
-/// Writes the name of a joint, and beside it fainter that of its only channel.
+/// Writes the name of a joint, and beside it fainter that of its only channel, if it has room.
 pub(in crate::ui) fn named(ui: &Ui, rect: Rect, [joint, channel]: [&str; 2], colour: Color32) {
+    const LEAST: f32 = 40.0;
     line(ui, rect, joint, ui.visuals().strong_text_color());
     let font: FontId = TextStyle::Body.resolve(ui.style());
     let galley = ui.fonts_mut(|fonts| fonts.layout_no_wrap(joint.to_owned(), font, colour));
-    line(ui, rect.with_min_x(rect.left() + galley.size().x + 6.0), channel, colour);
+    let beside = rect.with_min_x(rect.left() + galley.size().x + 6.0);
+    if beside.width() > LEAST {
+        line(ui, beside, channel, colour);
+    }
 }
 
 /// A row with the keys of all channels, of all of a joint, or of one channel.

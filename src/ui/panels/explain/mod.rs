@@ -171,8 +171,9 @@ fn sentence(ui: &mut Ui, session: &Session, limb: &ShownLimb) {
     let height = 3.0 * ui.text_style_height(&egui::TextStyle::Body) + 4.0;
     ui.allocate_ui(vec2(ui.available_width(), height), |ui| {
         ui.set_min_height(height);
-        ui.label(pose_summary::sentence_on_limb(session, limb));
-        if limb.frames.pose().reach == Some(Reach::Reached) {
+        let sentence = ui.label(pose_summary::sentence_on_limb(session, limb));
+        let is_short = sentence.rect.height() < 0.5 * height;
+        if is_short && limb.frames.pose().reach == Some(Reach::Reached) {
             let ReachLimits { inner, outer } = limb.frames.limits;
             let [inner, outer] = [inner, outer].map(|it| limb.lengths().show(it));
             ui.weak(format!("Its reach is {inner} to {outer}."));
