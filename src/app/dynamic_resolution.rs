@@ -96,7 +96,7 @@ pub(super) struct DynamicResolution {
 
 impl DynamicResolution {
     /// The scale of a frame at the time `now`, for a viewport of a size in pixels. Without a budget
-    /// it is not below 1.
+    /// it is 1.
     pub fn next(
         &mut self,
         change: SceneChange,
@@ -104,6 +104,10 @@ impl DynamicResolution {
         budget: Option<Duration>,
         now: Instant,
     ) -> f32 {
+        if budget.is_none() {
+            *self = Self::default();
+            return 1.0;
+        }
         self.is_small_enough = width.saturating_mul(height) <= MOST_PIXELS;
         if change != SceneChange::Nothing {
             self.changed = Some(now);
@@ -111,10 +115,6 @@ impl DynamicResolution {
         if change == SceneChange::Motion {
             self.moved = Some(now);
         } else if self.moved.is_some_and(|moved| now.duration_since(moved) >= REST) {
-            self.moved = None;
-        }
-        if budget.is_none() {
-            self.set_step(0);
             self.moved = None;
         }
         match self.moved {
@@ -328,11 +328,13 @@ mod tests {
     }
 
     #[test]
-    fn without_a_budget_the_scene_is_never_drawn_smaller() {
+    fn without_a_budget_the_scene_is_always_drawn_in_full() {
         let mut resolution = DynamicResolution { step: 4, ..DynamicResolution::default() };
         let now = Instant::now();
         assert_eq!(resolution.next(MOTION, SIZE, None, now), 1.0);
         resolution.measure(&drawn(1.0), Duration::from_secs(1), None);
         assert_eq!(resolution.next(MOTION, SIZE, None, now), 1.0);
+        assert_eq!(resolution.next(NOTHING, SIZE, None, now + STILL), 1.0);
+        assert_eq!(resolution.rests_in(now), None);
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use egui::vec2;
 
-use crate::open;
+use crate::places::Places;
 use crate::screen::{Program, wait_for};
 
 /// Saves a picture by the keyboard, at once after what was done before, and reads the file.
@@ -21,7 +21,11 @@ fn picture(program: &Program, path: &Path) -> Vec<u8> {
 #[test]
 #[ignore = "needs a display of its own"]
 fn a_picture_saved_right_after_a_drag_is_the_picture_in_full() {
-    let (folder, places, program) = open();
+    let folder = tempfile::tempdir().expect("a folder");
+    // Settings without a word on the resolution, so that it changes.
+    fs::create_dir_all(folder.path().join("ik-arm")).expect("a folder");
+    fs::write(folder.path().join("ik-arm/settings.ron"), "()").expect("settings");
+    let (places, program) = (Places::new(), Program::open(folder.path()));
     // Of all ways to move, orbiting changes the most pixels.
     program.drag(places.empty, places.empty + vec2(60.0, -40.0));
     let at_once = picture(&program, &folder.path().join("at-once.png"));

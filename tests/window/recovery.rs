@@ -85,10 +85,12 @@ fn a_recovered_document_that_is_given_up_is_not_offered_again() {
 fn settings_are_kept_when_the_program_is_killed() {
     let (folder, places, program) = open();
     let before = program.at_rest();
+    let file = folder.path().join("ik-arm/settings.ron");
+    let settings = || std::fs::read_to_string(&file).unwrap_or_default();
+    let earlier = settings();
     program.key("ctrl+alt+n");
     program.wait_until("the figure", |now| changed(&before, now, places.head, 8.0) > 20);
-    let file = folder.path().join("ik-arm/settings.ron");
-    wait_for("the settings", || file.exists().then_some(()));
+    wait_for("the settings", || (settings() != earlier).then_some(()));
     program.kill();
 }
 

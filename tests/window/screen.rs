@@ -22,7 +22,7 @@ use crate::display::Display;
 pub const SIZE: (u32, u32) = (1280, 800);
 pub const PATIENCE: Duration = Duration::from_secs(60);
 /// A screen unchanged for this long counts as settled. Shorter than the blink of a text cursor.
-const REST: Duration = Duration::from_millis(400);
+const REST: Duration = Duration::from_millis(300);
 const POLL: Duration = Duration::from_millis(50);
 
 /// The running program with its window, killed when dropped.
@@ -56,6 +56,7 @@ impl Program {
     }
 
     fn start(settings: &Path, debug: &str, file: Option<&Path>, display: Display) -> Self {
+        draw_in_full(settings);
         let mut child = Command::new(env!("CARGO_BIN_EXE_ik-arm"))
             .args(file)
             .env("XDG_CONFIG_HOME", settings)
@@ -252,6 +253,17 @@ impl Drop for Program {
 
 fn is_frame(line: &str) -> bool {
     line.contains("TRACE") && line.contains("] frame ")
+}
+
+/// Asks in new settings that the scene is always drawn in full: at other resolutions, two pictures of
+/// the same scene may differ, depending on how fast the machine is.
+fn draw_in_full(settings: &Path) {
+    let file = settings.join("ik-arm/settings.ron");
+    if file.exists() {
+        return;
+    }
+    std::fs::create_dir_all(settings.join("ik-arm")).expect("a folder");
+    std::fs::write(file, "(preferences:(frame_budget:unlimited))").expect("settings");
 }
 
 fn is_error(line: &str) -> bool {
