@@ -86,8 +86,9 @@ pub(super) struct DynamicResolution {
     moved: Option<Instant>,
     /// Time of the last change; `None` before the first.
     changed: Option<Instant>,
-    /// Times of the last two frames that drew the scene in full or finer, as if it was in full; 0
-    /// before them. The faster one counts, since a frame may also wait for a shader.
+    /// Times of the last two frames that drew the scene in full; 0 before them. The faster one counts,
+    /// since a frame may also wait for a shader. Finer frames do not: a picture at rest must not become
+    /// coarse again because it took longer than predicted.
     full: [Duration; 2],
     is_small_enough: bool,
     slow: u32,
@@ -146,8 +147,8 @@ impl DynamicResolution {
     /// scale.
     pub fn measure(&mut self, frame: &FrameTime, time: Duration, budget: Option<Duration>) {
         let scale = frame.resolution_scale;
-        if frame.draws_scene && scale >= 1.0 {
-            self.full = [self.full[1], time.div_f32(scale * scale)];
+        if frame.draws_scene && scale == 1.0 {
+            self.full = [self.full[1], time];
         }
         let is_telling = frame.draws_scene && scale == SCALES[self.step];
         let Some(budget) = budget.filter(|_| is_telling) else { return };
@@ -325,6 +326,21 @@ mod tests {
         assert_eq!(scale_at_rest(&[110, 110], SIZE), 1.0);
         assert_eq!(scale_at_rest(&[9, 9], (1360, 1100)), 2.0);
         assert_eq!(scale_at_rest(&[9, 9], (3840, 2160)), 1.0);
+    }
+
+    #[test]
+    fn a_finer_picture_stays_even_if_it_took_longer_than_predicted() {
+        let mut resolution = DynamicResolution::default();
+        let start = Instant::now();
+        resolution.next(STEP, SIZE, BUDGET, start);
+        for _ in 0..2 {
+            resolution.measure(&drawn(1.0), Duration::from_millis(99), BUDGET);
+        }
+        for frame in 1..5 {
+            let now = start + frame * STILL;
+            assert_eq!(resolution.next(NOTHING, SIZE, BUDGET, now), Canvas::FINEST);
+            resolution.measure(&drawn(Canvas::FINEST), Duration::from_secs(1), BUDGET);
+        }
     }
 
     #[test]
