@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Quat, Vec3};
 use ik_arm_kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
 use ik_arm_kinematics::skin::{
     Blob, BlobSphere, SkinShape, SkinShapeError, SkinnedMesh, Skinning, VertexWeights,
@@ -385,6 +385,44 @@ fn a_jointed_skin_keeps_its_volume_however_far_it_bends() {
             assert!((bent / straight - 1.0).abs() < 1e-4, "{skinning:?}: {bent} of {straight}");
         }
     }
+}
+
+/// The normal of a bone's cylinder at a point of its surface: away from the nearest point of the bone.
+fn normal_of_bone(at: Vec3, [base, tip]: [Vec3; 2]) -> Vec3 {
+    let along = (at - base).dot(tip - base) / (tip - base).length_squared();
+    (at - base.lerp(tip, along.clamp(0.0, 1.0))).normalize()
+}
+
+#[test]
+fn two_bodies_of_a_jointed_skin_have_nearly_one_normal_at_their_seam() {
+    const NEAR: f32 = 0.05;
+    let mut joints: Vec<Joint> =
+        tube(2, 3.0, 0.5).joints().iter().map(|it| Joint::clone(it)).collect();
+    joints[1].axis = Quat::from_rotation_x(1.0) * joints[1].axis;
+    let skeleton = Skeleton::from_joints(joints).expect("skeleton");
+    let shape = SkinShape { is_jointed: true, detail: 8.0, ..SkinShape::default() };
+    let mesh = SkinnedMesh::from_bones(&skeleton, &shape).expect("skin");
+    let pose = skeleton.bind_pose_in_skeleton();
+    let bones = [0, 1].map(JointId::new).map(|joint| [pose.base(joint), pose.tip(joint)]);
+    let of = |joint: usize| {
+        let weights = mesh.weights().iter();
+        let rows = mesh.mesh().positions.iter().zip(&mesh.mesh().normals).zip(weights);
+        let own = rows
+            .filter(move |(_, weights)| weights.iter().any(|it| it == (JointId::new(joint), 1.0)));
+        own.map(|(vertex, _)| vertex).collect::<Vec<_>>()
+    };
+    let (upper, lower) = (of(0), of(1));
+    let mut sharpest = (1.0_f32, 1.0_f32);
+    for ((at, normal), (other_at, other)) in
+        upper.iter().flat_map(|one| lower.iter().map(move |other| (*one, *other)))
+    {
+        if at.distance(*other_at) < NEAR {
+            let [own, others] = bones.map(|bone| normal_of_bone(*at, bone));
+            sharpest = (sharpest.0.min(own.dot(others)), sharpest.1.min(normal.dot(*other)));
+        }
+    }
+    assert!(sharpest.0 < 0.7, "the bodies meet at an angle: {sharpest:?}");
+    assert!(sharpest.1 > 0.9, "the normals do not: {sharpest:?}");
 }
 
 #[test]

@@ -19,7 +19,8 @@ pub struct SkinShape {
     /// Bodies beside the bones.
     pub blobs: Vec<Blob>,
     /// Each joint has a closed surface of its own, which moves with it alone, as the parts of an
-    /// artist's mannequin do. Otherwise each tree of joints has one.
+    /// artist's mannequin do. Where two surfaces meet, their normals turn to the mean of both, so that
+    /// the seam is hardly seen. Otherwise each tree of joints has one surface.
     pub is_jointed: bool,
     /// Euler angles in radians of the joints in the pose in which the surface is made; 0 for joints
     /// that are not in the list, as in the bind pose.
@@ -227,6 +228,12 @@ impl Body {
     /// The sweeps of all parts.
     pub fn sweeps(&self) -> impl Iterator<Item = &Sweep> {
         self.parts.iter().map(|part| &part.sweep)
+    }
+
+    /// Lowest and highest corner of a box around all parts.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        let boxes = self.sweeps().map(Sweep::bounds);
+        boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
     }
 
     /// Makes parts that are thinner than `radius` that thick.

@@ -11,6 +11,7 @@ mod field;
 mod grid;
 mod pose;
 mod round_cone;
+mod seams;
 mod surface_nets;
 mod sweep;
 mod weights;
@@ -55,8 +56,11 @@ impl SkinnedMesh {
             body.thicken(f64::from(SkinShape::LEAST_DETAIL) * cell);
         }
         let bodies: Vec<(Body, f64)> = bodies.into_iter().zip(cells).collect();
-        let surfaces =
+        let mut surfaces =
             grid::map_in_order(&bodies, |(body, cell)| Surface::new(body, *cell, skeleton));
+        if shape.is_jointed {
+            soften_seams(&mut surfaces, &bodies, skeleton);
+        }
         let mut mesh = TriangleMesh::default();
         let mut weights = Vec::new();
         for surface in surfaces {
@@ -100,7 +104,7 @@ fn cell_sizes(bodies: &[Body], shape: &SkinShape) -> Result<Vec<f64>, SkinShapeE
     let count = bodies.iter().zip(&cells).map(|(body, cell)| area(body) / (cell * cell));
     let coarser = (count.sum::<f64>() / MOST_CELLS).sqrt().max(1.0);
     cells.iter_mut().for_each(|cell| *cell *= coarser);
-    let size = bodies.iter().map(bounds).map(|(low, high)| (high - low).max_element());
+    let size = bodies.iter().map(Body::bounds).map(|(low, high)| (high - low).max_element());
     let along = size.zip(&cells).map(|(size, cell)| size / cell);
     let ratio =
         along.fold(0.0, |most, ratio| if ratio.is_nan() { f64::INFINITY } else { ratio.max(most) });
@@ -110,10 +114,15 @@ fn cell_sizes(bodies: &[Body], shape: &SkinShape) -> Result<Vec<f64>, SkinShapeE
     Ok(cells)
 }
 
-/// Lowest and highest corner of a box around a body.
-fn bounds(body: &Body) -> (DVec3, DVec3) {
-    let boxes = body.sweeps().map(Sweep::bounds);
-    boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
+/// Turns the normals near the seams of a jointed skin.
+fn soften_seams(surfaces: &mut [Surface], bodies: &[(Body, f64)], skeleton: &Skeleton) {
+    let bodies: Vec<&Body> = bodies.iter().map(|(body, _)| body).collect();
+    let turns = seams::turns(&bodies, |body| &surfaces[body].vertices, skeleton);
+    for (surface, turns) in surfaces.iter_mut().zip(turns) {
+        for (vertex, turn) in turns {
+            surface.normals[vertex] += turn;
+        }
+    }
 }
 
 /// The mesh of a body, with the weights of its vertices.
@@ -127,7 +136,7 @@ struct Surface {
 impl Surface {
     fn new(body: &Body, cell: f64, skeleton: &Skeleton) -> Self {
         const ROUNDS: usize = 2;
-        let (low, high) = bounds(body);
+        let (low, high) = body.bounds();
         let grid = Grid::new(&Field::new(body), cell, low - 2.0 * cell, high + 2.0 * cell);
         let mut net = SurfaceNet::new(&grid);
         let normals = surface_nets::relax(&mut net, &grid, ROUNDS);
