@@ -83,13 +83,13 @@ picture_of_example() {
     rm -r "$frames"
 }
 
-# Reads a document and writes it without names in the view, which would be specks.
+# Reads a document and writes it without names and axes, which would be specks and stray lines.
 without_names() {
     python3 -c '
 import json, sys
 document = json.load(sys.stdin)
-shown = ["cursor", "skin", "trail", "paths", "grid_xz", "ground", "axes", "shadow"]
-document["overlays"] = [it for it in document.get("overlays") or shown if it != "labels"]
+shown = ["cursor", "skin", "trail", "paths", "grid_xz", "ground", "shadow"]
+document["overlays"] = [it for it in document.get("overlays") or shown if it not in ("labels", "axes")]
 json.dump(document, sys.stdout)'
 }
 
@@ -106,15 +106,20 @@ first() {
 come_closer() {
     local part=1 to=(0 0 0)
     case $1 in
-        two-targets | ten-joints | pulled-apart | out-of-reach) part=0.72 ;;
+        arm) part=0.62 to=(60 -20 10) ;;
+        two-targets) part=0.6 ;;
+        table) part=1 ;;
+        ten-joints | pulled-apart | out-of-reach) part=0.72 ;;
         inside-* | too-few-iterations) part=0.75 ;;
         locked) part=0.9 ;;
         degenerate) part=0.6 ;;
         snake) part=0.6 to=(0.55 0 0.75) ;;
-        walk) part=0.69 to=(0 0 "$(awk "BEGIN { print 1.41 * ($3 - 1) }")") ;; # metres in a second
+        walk) part=0.68 to=(0 0 "$(awk "BEGIN { print 1.41 * ($3 - 1) }")") ;; # metres in a second
+        human) part=0.88 ;;
+        wheel) part=0.9 ;;
         tadpoles) part=0.85 ;;
-        reaching-down) part=0.85 ;;
-        looking-at-the-hand) part=0.6 to=(0 0.3 0) ;; # above the waist
+        reaching-down) part=0.78 ;;
+        looking-at-the-hand) part=0.88 ;;
     esac
     python3 - "$2" "$part" "${to[@]}" <<'END'
 import json, sys

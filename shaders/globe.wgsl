@@ -1,9 +1,10 @@
 // Sphere of all directions of the Pointer, coloured by the twist reference's gain.
 
 const RIM_OPACITY = 0.3;
-const FAR_OPACITY = 0.65; // as a multiple of the near side's opacity
+const FAR_OPACITY = 0.8; // as a multiple of the near side's opacity
 const LINE_WIDTH = 1.3; // points
-const LINE_OPACITY = 0.55;
+const LINE_OPACITY = 0.5;
+const FAR_LINE = 0.4; // opacity of lines on the far side, as a multiple
 const LEVELS = vec3f(0.6931472, 1.0986123, 1.7917595); // ln 2, ln 3, ln 6 for gains 1, 2, 5
 const MAX_SLOPE = 0.2; // change of the level per pixel above which lines fade out
 
@@ -59,9 +60,10 @@ fn fragment(s: Side) -> Laid {
     let met = meet(pixel_ray(s.position.xy), globe.centre, globe.radius, s.direction);
     let level = log(1.0 + gain(normalize(met.point - globe.centre)));
     let fill = ramp(level);
-    let line = isolines(level) * LINE_OPACITY;
+    let far = s.direction > 0.0;
+    let line = isolines(level) * LINE_OPACITY * select(1.0, FAR_LINE, far);
 
-    let behind_near = s.direction > 0.0 && met.hides_far > 0.5;
+    let behind_near = far && met.hides_far > 0.5;
     let share = met.cover * select(1.0, FAR_OPACITY, behind_near);
     let opacity = (fill.a + RIM_OPACITY * rim(met.grazing)) * share;
     let colour = mix(fill.rgb, globe.line.rgb, line);

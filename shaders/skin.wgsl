@@ -13,6 +13,7 @@ struct Look {
 
 // Opacity of the tint where the surface faces the eye, as a fraction of that at the outline.
 const TINT_INSIDE = 0.15;
+const OUTLINE = 1.6; // opacity at the outline of an onion skin that is added, as a multiple
 
 // A constant, because a software adapter samples the texture even if a uniform selects the other branch.
 override IS_TEXTURED = false;
@@ -103,6 +104,8 @@ fn fragment(s: Surface, @builtin(front_facing) is_front: bool) -> @location(0) v
     let grazing = 1.0 - abs(dot(normal, to_eye));
     let tint = look.tint.a * smoothstep(0.1, 0.6, s.weight) * mix(TINT_INSIDE, 1.0, grazing * grazing * grazing);
     let tinted = mix(mix(own, of_weight, look.has_weights), look.tint.rgb, tint);
+    // Denser at the outline of an onion skin, so that several in front of each other are told apart.
+    opacity *= 1.0 + (1.0 - look.colour.a) * OUTLINE * grazing * grazing * grazing;
     let light = reflected(tinted, normal) + emitted;
     // As bright as `encoded` is exact.
     let colour = encoded(min(light, vec3f(1.4)));

@@ -8,6 +8,8 @@ pub(super) const LINE_HEIGHT: f32 = 15.0;
 /// Across and down, the nearest that a text comes to the middle of a ball, as fractions of the ball's
 /// radius: beside an upright limb, the text is clear of the limb's whole width.
 const CLEAR: Vec2 = Vec2::new(1.0, core::f32::consts::FRAC_1_SQRT_2);
+/// Least space between two texts side by side, in points.
+const BETWEEN: f32 = 5.0;
 /// Ratio of the height of letters to that of a line.
 const LETTERS: f32 = 0.75;
 /// Maximum number of lines by which a label is moved away from its point to be clear of others.
@@ -16,8 +18,11 @@ const MOST_LINES: u8 = 3;
 const SAMPLES: [u16; 2] = [6, 3];
 /// Least radius in pixels of what a text should not cover.
 const LEAST_RADIUS: f32 = 3.0;
-/// How many places farther down the list a text goes rather than cover one of these points.
-const COST_OF_COVER: u32 = 3;
+/// What it costs to cover one of these points, by a limb or by a thin line, and to go a line farther
+/// away. To go to the next side costs 1.
+const COST_OF_LIMB: u32 = 4;
+const COST_OF_THIN: u32 = 2;
+const COST_OF_LINE: u32 = 5;
 
 /// Where labels are written, so that none covers another or leaves the picture, nor a limb where
 /// there is room beside it: on its own side of its point, else on another side, else farther away.
@@ -70,19 +75,21 @@ impl LabelPlaces {
                 low.cmpge(Vec2::ZERO).all() && high.cmple(size).all()
             };
             let mut best = (text.pen(label.side, 0), (true, true, u32::MAX));
-            for (nth, pen) in (0..).zip(text.places(label.side)) {
-                let covered = text.covered(pen, &self.limbs);
-                let cost = (!is_free(&pen), !is_inside(&pen), COST_OF_COVER * covered + nth);
-                if cost < best.1 {
-                    best = (pen, cost);
-                }
-                if best.1 <= (false, false, nth + 1) {
+            for (far, pen) in text.places(label.side) {
+                if best.1 <= (false, false, far) {
                     // Later places cost at least this much.
                     break;
                 }
+                let covered = text.covered(pen, &self.limbs);
+                let cost = (!is_free(&pen), !is_inside(&pen), covered + far);
+                if cost < best.1 {
+                    best = (pen, cost);
+                }
             }
             let (pen, _) = best;
-            self.taken.push(text.corners(pen));
+            let [low, high] = text.corners(pen);
+            let beside = Vec2::new(BETWEEN * scale, 0.0);
+            self.taken.push([low - beside, high + beside]);
             self.pens.push(Some(pen));
         }
     }
@@ -100,11 +107,15 @@ struct Text {
 }
 
 impl Text {
-    /// Starts of the baseline, the best first.
-    fn places(self, side: LabelSide) -> impl Iterator<Item = Vec2> {
+    /// Starts of the baseline, the best first, each with what it costs not to be the best.
+    fn places(self, side: LabelSide) -> impl Iterator<Item = (u32, Vec2)> {
         let others = LabelSide::ALL.into_iter().filter(move |other| *other != side);
         let sides = std::iter::once(side).chain(others);
-        (0..=MOST_LINES).flat_map(move |lines| sides.clone().map(move |side| self.pen(side, lines)))
+        (0..=MOST_LINES).flat_map(move |lines| {
+            (0..).zip(sides.clone()).map(move |(nth, side)| {
+                (COST_OF_LINE * u32::from(lines) + nth, self.pen(side, lines))
+            })
+        })
     }
 
     fn pen(self, side: LabelSide, lines: u8) -> Vec2 {
@@ -119,19 +130,19 @@ impl Text {
         point + Vec2::new(across, drop)
     }
 
-    /// Number of points of the text, of [`SAMPLES`] that are spread evenly over it, at which it
-    /// covers a limb.
+    /// What it costs that the text covers limbs, at points that are spread evenly over it: [`SAMPLES`].
     fn covered(self, pen: Vec2, limbs: &[SeenLimb]) -> u32 {
         let [low, high] = self.corners(pen);
         let [columns, rows] = SAMPLES;
-        let covers = |nth: u16| {
+        let cost = |nth: u16| {
             let [column, row] = [nth % columns, nth / columns].map(f32::from);
             let part =
                 Vec2::new(column, row) / Vec2::new(f32::from(columns - 1), f32::from(rows - 1));
             let at = low + (high - low) * part;
-            limbs.iter().any(|limb| limb.covers(at))
+            let covered = limbs.iter().filter(|limb| limb.covers(at));
+            covered.map(|it| if it.is_thin { COST_OF_THIN } else { COST_OF_LIMB }).max()
         };
-        (0..columns * rows).filter(|nth| covers(*nth)).count() as u32
+        (0..columns * rows).filter_map(cost).sum()
     }
 
     fn corners(self, pen: Vec2) -> [Vec2; 2] {
@@ -145,6 +156,8 @@ struct SeenLimb {
     from: Vec2,
     to: Vec2,
     radius: f32,
+    /// True for a line.
+    is_thin: bool,
 }
 
 impl SeenLimb {
@@ -171,6 +184,7 @@ impl SeenLimb {
                 from: pixel(projection, from, size)?,
                 to: pixel(projection, to, size)?,
                 radius: (radius * pixels).max(LEAST_RADIUS),
+                is_thin: radius == 0.0,
             })
         })
     }

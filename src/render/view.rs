@@ -61,11 +61,9 @@ impl ViewData {
         let (palette, planes) = (&scene.palette, &scene.planes);
         let projection = scene.camera.projection(width as f32 / height as f32);
         let screen = |colour: Colour| Vec4::from_array(colour.channels());
-        // The lower half of a globe shines through the floor.
-        let ground = match scene.globe.filter(Globe::has_size) {
-            Some(_) => palette.ground.with_opacity(0.3 * palette.ground.channels()[3]),
-            None => palette.ground,
-        };
+        // Nothing is between the eye and the lower half of a globe.
+        let has_globe = scene.globe.filter(Globe::has_size).is_some();
+        let ground = palette.ground.with_opacity(planes.ground_opacity);
         let shown = |colour: Colour, is_shown: bool| {
             screen(if is_shown { colour } else { colour.with_opacity(0.0) })
         };
@@ -86,8 +84,8 @@ impl ViewData {
             padding: 0.0,
             sky_top: screen(palette.sky_top),
             sky_bottom: screen(palette.sky_bottom),
-            ground: shown(ground, planes.ground),
-            grid: shown(palette.grid, planes.grid_xz),
+            ground: shown(ground, planes.ground && !has_globe),
+            grid: shown(palette.grid, planes.grid_xz && !has_globe),
             walls: screen(palette.wall),
         }
     }

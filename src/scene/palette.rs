@@ -58,7 +58,7 @@ impl Palette {
                 axes: [0xe04b4b, 0x6fb33c, 0x4a86f0].map(Colour::rgb),
                 sky_top: Colour::rgb(0x2c313a),
                 sky_bottom: Colour::rgb(0x171a1f),
-                ground: Colour::rgb(0x454b56).with_opacity(0.75),
+                ground: Colour::rgb(0x3a3f48),
                 grid: Colour::rgb(0x9aa4b4).with_opacity(0.75),
                 wall: Colour::rgb(0x9aa4b4),
                 text: Colour::rgb(0xeef0f4),
@@ -75,7 +75,7 @@ impl Palette {
                 axes: [0xd03232, 0x458f20, 0x2864d8].map(Colour::rgb),
                 sky_top: Colour::rgb(0xe9edf1),
                 sky_bottom: Colour::rgb(0xd0d7df),
-                ground: Colour::rgb(0xf6f8fa).with_opacity(0.75),
+                ground: Colour::rgb(0xedf0f3),
                 grid: Colour::rgb(0x5a6678).with_opacity(0.7),
                 wall: Colour::rgb(0x5a6678),
                 text: Colour::rgb(0x1c1f24),
@@ -104,8 +104,11 @@ impl Palette {
 
     /// See-through colour of an onion skin: the fainter, the farther it is from the playhead.
     pub(super) fn onion_skin(&self, skin: &OnionSkin) -> Colour {
-        const OPACITY: f32 = 0.28;
-        let plain = if skin.past { self.grid } else { self.accent };
+        const OPACITY: f32 = 0.3;
+        // Part of the sky in the grey of the past.
+        const FADED: f32 = 0.3;
+        let past = self.guide.mixed(self.sky_bottom, FADED);
+        let plain = if skin.past { past } else { self.accent };
         plain.with_opacity(OPACITY * skin.opacity)
     }
 
@@ -190,7 +193,7 @@ impl Palette {
 }
 
 fn ramp(hex: [u32; Palette::GAINS]) -> [Colour; Palette::GAINS] {
-    const OPACITY: [f32; Palette::GAINS] = [0.05, 0.11, 0.21, 0.36, 0.54];
+    const OPACITY: [f32; Palette::GAINS] = [0.04, 0.08, 0.2, 0.46, 0.8];
     std::array::from_fn(|step| Colour::rgb(hex[step]).with_opacity(OPACITY[step]))
 }
 

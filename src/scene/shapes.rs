@@ -175,6 +175,8 @@ pub struct Planes {
     pub grid_yz: bool,
     /// True if the ground is drawn.
     pub ground: bool,
+    /// Opacity of the ground, from 0 to 1.
+    pub ground_opacity: f32,
     /// Centre of the drawn part, in the world.
     pub centre: Vec3,
     /// Radius in world units at which the vertical grids have faded out. The ground reaches about
@@ -188,6 +190,12 @@ impl Planes {
     /// Ratio of the radius of the planes to the reach of the rig, large enough that the rig has
     /// ground below it in every pose.
     const RADIUS: f32 = 1.7;
+    /// Opacity of the ground while everything stands on it, and while a part of the rig is well below
+    /// it and must be seen.
+    const SOLID: f32 = 1.0;
+    const CLEAR: f32 = 0.75;
+    /// Depth below the ground from which it is clear, as a fraction of the rig's reach.
+    const DEPTH: f32 = 0.08;
 
     /// The planes that `display` shows, around a rig of this centre and reach.
     pub(super) fn around(centre: Vec3, reach: f32, cell: f32, display: Display) -> Self {
@@ -196,10 +204,18 @@ impl Planes {
             grid_xz: display.shows(Overlay::GridXz),
             grid_yz: display.shows(Overlay::GridYz),
             ground: display.shows(Overlay::Ground),
+            ground_opacity: Self::SOLID,
             centre,
             radius: (Self::RADIUS * reach).min(f32::MAX),
             cell,
         }
+    }
+
+    /// Lets joints below the ground be seen through it. `lowest` is the least y of a joint, and `reach`
+    /// that of the rig.
+    pub(super) fn clear(&mut self, lowest: f32, reach: f32) {
+        let part = if lowest < 0.0 { (-lowest / (Self::DEPTH * reach)).min(1.0) } else { 0.0 };
+        self.ground_opacity = Self::SOLID + part * (Self::CLEAR - Self::SOLID);
     }
 
     /// The ground and its grid under a crowd. A grid cell is as wide as an arm is long, or a power

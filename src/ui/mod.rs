@@ -47,7 +47,9 @@ pub fn show(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Act
         // In a low window the timeline gives way to the view.
         let most = (ui.available_height() - VIEW_HEIGHT).clamp(88.0, 328.0);
         let height = timeline::height(ui, session).clamp(88.0, most);
-        let panel = Panel::bottom("keys").default_size(height).size_range(88.0..=most);
+        // Curves need more height than rows, so each of both keeps its own.
+        let id = if session.preferences().curves { "curves" } else { "keys" };
+        let panel = Panel::bottom(id).default_size(height).size_range(88.0..=most);
         reserve(panel.resizable(true), ui, None)
     });
     Panel::left("controls")

@@ -68,8 +68,8 @@ pub fn install(ctx: &Context) {
             spacing.menu_margin = egui::Margin::same(6);
             // Otherwise scroll bars cover the ends of texts.
             spacing.scroll.floating_allocated_width = 6.0;
-            // Seen also while the mouse is elsewhere: panels show that they scroll.
-            spacing.scroll.dormant_handle_opacity = 0.35;
+            // Seen also while the mouse is elsewhere, but faintly: panels show that they scroll.
+            spacing.scroll.dormant_handle_opacity = 0.2;
             // Faded rows look disabled.
             spacing.scroll.fade.strength = 0.0;
             spacing.window_margin = egui::Margin::same(12);

@@ -166,7 +166,7 @@ fn an_onion_skin_of_a_figure_is_its_skin_or_else_its_bones_with_hips() {
         // At 24 frames a second the motion starts 12 frames before.
         let names = scene.labels.iter().map(|label| scene.text(label));
         let names: Vec<&str> = names.filter(|name| name.ends_with(" frames")).collect();
-        assert_eq!(names, ["−8 frames", "+8 frames", "+16 frames"]);
+        assert_eq!(names, ["−12 frames", "+12 frames", "+24 frames"]);
         if has_skin {
             let [own, onion_skins @ ..] = &scene.skins[..] else { panic!("no skins") };
             assert_eq!(onion_skins.len(), overlays.onion_skins.len());

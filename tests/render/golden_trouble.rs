@@ -94,7 +94,7 @@ fn picture(scene: &Scene, side: u32) -> RgbaImage {
 /// Expected colours of a pixel of the globe, if they are smooth there: the
 /// ramp's for the library's own gain where the far and the near side are met, laid over the sky.
 fn expected(scene: &Scene, at: (u32, u32), side: u32, sky: [f64; 3]) -> Option<[f64; 3]> {
-    const FAR_OPACITY: f64 = 0.65;
+    const FAR_OPACITY: f64 = 0.8;
     let globe = scene.globe?;
     let (radius, centre) = (f64::from(globe.radius), globe.centre.as_dvec3());
     let ray = scene.camera.projection(1.0).ray(glam::Vec2::new(

@@ -414,8 +414,9 @@ impl Bench {
 
     /// The lower end of the tree of joints, below which the panel scrolls.
     pub fn bottom_of_outliner(&self) -> f32 {
-        let legend = self.shows(Role::Label, "locked");
-        let last = if legend { (Role::Label, "locked") } else { (Role::Button, "Joints") };
+        let is_open = self.shows(Role::List, "Joints as a tree");
+        let open = (Role::List, "Joints as a tree");
+        let last = if is_open { open } else { (Role::Button, "Joints") };
         self.rect(last.0, last.1).bottom()
     }
 

@@ -141,9 +141,9 @@ const BAR: f32 = 12.0;
 
 /// True if the control is a row of the tree of joints that the list has scrolled out of sight.
 fn is_scrolled_out(bench: &Bench, control: &Control) -> bool {
+    let tree = || bench.rect(Role::List, "Joints as a tree");
     control.name.starts_with("Joint ")
-        && (control.rect.top() < bench.rect(Role::Button, "Add child").bottom()
-            || control.rect.bottom() + BAR > bench.rect(Role::Label, "locked").top())
+        && (control.rect.top() < tree().top() || control.rect.bottom() + BAR > tree().bottom())
 }
 
 #[test]
@@ -191,10 +191,13 @@ fn part(bench: &Bench, rect: Rect) -> usize {
     }
 }
 
-/// True if a reader comes to `next` after `before`: further right in the same row, or lower.
+/// True if a reader comes to `next` after `before`: further right in the same row, also if it is higher
+/// than the row, or lower.
 fn is_read_after(bench: &Bench, before: Rect, next: Rect) -> bool {
     let (first, second) = (part(bench, before), part(bench, next));
-    let in_one_row = (before.center().y - next.center().y).abs() < 8.0;
+    let is_beside = next.left() >= before.right() && next.y_range().contains(before.center().y);
+    let is_as_high = before.height() < 2.0 * next.height();
+    let in_one_row = is_beside || is_as_high && (before.center().y - next.center().y).abs() < 8.0;
     // The places of the buttons for the views follow the camera.
     first == 2 && second == 2
         || first < second

@@ -603,6 +603,44 @@ fn the_status_line_says_how_many_keys_and_joints_are_selected() {
 }
 
 #[test]
+fn while_all_joints_are_folded_those_that_are_selected_are_shown() {
+    let mut bench = Bench::with_timeline(LARGE);
+    bench.apply([open_example("walk")]);
+    let headings = |bench: &Bench| {
+        ["pelvis · rotation", "spine · rotation", "chest · rotation"]
+            .map(|name| bench.shows(Role::Button, &format!("Channel {name}")))
+    };
+    assert_eq!(headings(&bench), [false; 3]);
+    assert!(bench.shows(Role::Button, "Keys of left_foot"), "a joint with a target");
+    bench.apply([SelectAction::Joints(vec![bench.joint("spine")])]);
+    bench.settle();
+    assert_eq!(headings(&bench), [false, true, false]);
+    bench.click(Role::Button, "Keys of all joints");
+    assert_eq!(headings(&bench), [true; 3]);
+    bench.click(Role::Button, "Keys of all joints");
+    assert_eq!(headings(&bench), [false, true, false]);
+}
+
+#[test]
+fn a_box_over_the_folded_row_of_all_keys_selects_the_keys_of_all_joints_in_it() {
+    let mut bench = Bench::with_timeline(LARGE);
+    bench.apply([open_example("walk")]);
+    let [first, last] =
+        ["Keys at 0.50 s", "Keys at 0.62 s"].map(|name| bench.rect(Role::Button, name).center());
+    let from = first + vec2(-10.0, 30.0);
+    bench.drag(PointerButton::Primary, from, last + vec2(10.0, 0.0));
+    bench.release(PointerButton::Primary);
+    bench.settle();
+    let tracks = bench.session().document().keys.tracks();
+    let inside = |time: f64| (0.5 - 1e-6..0.63).contains(&time);
+    let expected: usize = tracks
+        .map(|(_, track)| track.knots().iter().filter(|knot| inside(knot.time)).count())
+        .sum();
+    assert!(expected > 40, "{expected}");
+    assert_eq!(bench.session().selection().keys().len(), expected);
+}
+
+#[test]
 fn channels_stand_below_their_joint_which_folds_them_and_has_all_their_keys() {
     let mut bench = Bench::with_timeline(LARGE);
     bench.apply([open_example("walk")]);
@@ -610,6 +648,8 @@ fn channels_stand_below_their_joint_which_folds_them_and_has_all_their_keys() {
         ["pelvis · rotation", "pelvis · offset"]
             .map(|name| bench.shows(Role::Button, &format!("Channel {name}")))
     };
+    assert_eq!(channels(&bench), [false; 2], "many joints are folded at first");
+    bench.click(Role::Button, "Keys of all joints");
     assert_eq!(channels(&bench), [true; 2]);
     bench.click(Role::Button, "Keys of pelvis");
     assert_eq!(channels(&bench), [false; 2], "folded");

@@ -7,7 +7,7 @@ use super::{figure, twist};
 use crate::document::{Display, Overlay, Posed};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::{LimbFrames, LimbPart};
-use crate::scene::{Globe, Label, LabelSide, Scene, Solid, SphereShell};
+use crate::scene::{Ball, Globe, Label, LabelSide, Line, Scene, Solid, SphereShell};
 use crate::session::{Overlays, ShownLimb};
 
 /// Part of the sky in the Pointer's colour, so that it stays behind the limbs.
@@ -22,12 +22,7 @@ pub(super) fn add_guides(
 ) {
     add_pointer_and_limits(scene, limb, display);
     if display.shows(Overlay::SingularityGlobe) {
-        scene.add_globe(Globe {
-            centre: limb.origin(LimbPart::Root),
-            radius: limb.limits.outer,
-            reference: limb.posed.ik.reference,
-            axes: Mat3::from(limb.root.matrix3),
-        });
+        add_globe(scene, limb);
     }
     if display.shows(Overlay::Frames) {
         figure::add_frames(scene, limb);
@@ -38,6 +33,23 @@ pub(super) fn add_guides(
     if let Some(poses) = overlays.twist_references {
         twist::add_references(scene, limb, poses);
     }
+}
+
+/// Adds the globe of gains, with a ball in the colour of the present gain where the Pointer meets it.
+fn add_globe(scene: &mut Scene, limb: &LimbFrames) {
+    /// Radius of the ball, as a fraction of the globe's.
+    const BALL: f32 = 0.022;
+    let (centre, radius) = (limb.origin(LimbPart::Root), limb.limits.outer);
+    let axes = Mat3::from(limb.root.matrix3);
+    let reference = limb.posed.ik.reference;
+    scene.add_globe(Globe { centre, radius, reference, axes });
+    let (palette, pointer) = (scene.palette, limb.pose().pointer);
+    let colour = palette.gain(reference.gain(pointer)).with_opacity(1.0);
+    let meets = centre + axes * pointer.direction * radius;
+    let tip = limb.world(LimbPart::Pointer).transform_point3(Vec3::X * limb.pointer().length);
+    let line = palette.guide.with_opacity(0.5);
+    scene.lines.push(Line { from: tip, to: meets, colour: line, dashed: true });
+    scene.balls.push(Ball { centre: meets, radius: BALL * radius, colour });
 }
 
 /// Adds the circles of elbows: that of the limb of the selected joint, with its twist, or else of

@@ -72,6 +72,7 @@ impl SceneBuilder {
             add_axes(scene, reach);
         }
         skeleton::add(scene, posed, overlays, &mut self.scratch);
+        scene.planes.clear(self.scratch.lowest(), reach);
         if display.shows(Overlay::ElbowCircle) {
             limb::add_circles(scene, posed, overlays.selection.last().copied());
         }
@@ -108,21 +109,33 @@ fn add_axes(scene: &mut Scene, reach: f32) {
 }
 
 /// Adds the trail of the hand or the selected joint, with a dot for every frame, a ball for every
-/// key, and arrowheads between keys. What is past at a time in seconds is grey, as onion skins of the past are.
+/// key, and arrowheads between keys. What is past at a time in seconds is grey, as onion skins of the
+/// past are; what is far is faint.
 fn add_trail(scene: &mut Scene, trail: &Trail, now: f64, reach: f32) {
     // Radii of a key, of a dot and of the tube between two dots, as fractions of the rig's reach.
     const KEY_RADIUS: f32 = 0.012;
     const DOT_RADIUS: f32 = 0.0045;
     const TUBE_RADIUS: f32 = 0.002;
+    // Part of the sky in the colour of the farthest point.
+    const FADED: f32 = 0.6;
     let palette = scene.palette;
-    let colour = |time: f64| palette.trail(time < now);
+    let view = scene.camera.projection(1.0);
+    let depth = |at: Vec3| view.forward.dot(at - view.eye);
+    let depths = trail.points.iter().map(|(_, at)| depth(*at));
+    let [near, far] = depths.fold([f32::INFINITY, f32::NEG_INFINITY], |[near, far], depth| {
+        [near.min(depth), far.max(depth)]
+    });
+    let colour = |time: f64, at: Vec3| {
+        let part = if far > near { (depth(at) - near) / (far - near) } else { 0.0 };
+        palette.trail(time < now).mixed(palette.sky_bottom, FADED * part)
+    };
     let [key, dot, tube] = [KEY_RADIUS, DOT_RADIUS, TUBE_RADIUS].map(|part| part * reach);
     for ends in trail.points.windows(2).filter(|ends| ends[0].1 != ends[1].1) {
         let [(time, from), (_, to)] = [ends[0], ends[1]];
-        scene.add_guide_solid(from, to, tube, tube, colour(time));
+        scene.add_guide_solid(from, to, tube, tube, colour(time, from));
     }
     let dots = trail.points.iter();
-    let dots = dots.map(|(time, at)| Ball { centre: *at, radius: dot, colour: colour(*time) });
+    let dots = dots.map(|(time, at)| Ball { centre: *at, radius: dot, colour: colour(*time, *at) });
     scene.balls.extend(dots);
     let keys = trail.keys.iter();
     let keys = keys.map(|(_, at)| Ball { centre: *at, radius: key, colour: palette.accent });

@@ -52,6 +52,14 @@ pub(super) struct Scratch {
     pub balance: Balance,
 }
 
+impl Scratch {
+    /// The least height of a joint or a tip of the latest pose, in the world.
+    pub fn lowest(&self) -> f32 {
+        let ends = |joint| [self.pose.base(joint), self.pose.tip(joint)];
+        self.pose.ids().flat_map(ends).map(|end| end.y).fold(f32::INFINITY, f32::min)
+    }
+}
+
 /// Centre and radius of the ground, and width of a grid cell, in world units. The radius is the
 /// skeleton's reach or the radius of its bounding sphere at time 0, whichever is larger.
 pub(super) fn measure(rig: &SkeletonRig, scratch: &mut Scratch) -> (Vec3, f32, f32) {
@@ -168,6 +176,12 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
                 let has_handles = overlays.has_handles && is_selected;
                 drawn.add_gap(scene, target.joint, report.position, accent, has_handles);
             }
+        }
+    }
+    let is_lit = |it: JointId| overlays.selection.contains(&it) || overlays.hovered == Some(it);
+    for target in rig.targets.iter().filter(|it| it.is_posing() && is_lit(it.joint)) {
+        if let Some(point) = target.aim_point_in_world(posed.skeleton()) {
+            drawn.add_aim(scene, target.joint, point);
         }
     }
     if display.shows(Overlay::Paths) {
@@ -313,6 +327,14 @@ impl DrawnSkeleton<'_> {
             }
             self.add_pole(scene, target, report, radius);
         }
+    }
+
+    /// Adds a line from the middle of a bone that aims to the point that it aims at: the base of a head
+    /// is its neck.
+    fn add_aim(&self, scene: &mut Scene, joint: JointId, to: Vec3) {
+        let from = self.pose.base(joint).midpoint(self.pose.tip(joint));
+        let colour = scene.palette.accent;
+        scene.lines.push(Line { from, to, colour, dashed: true });
     }
 
     fn target_radius(&self, joint: JointId) -> f32 {

@@ -25,10 +25,11 @@ const BAR: f32 = 12.0;
 const MOST_COLUMNS: usize = 4;
 const MOST_ROWS: f32 = 3.0;
 /// Height of the window without the pictures.
-const FRAME: f32 = 180.0;
+const FRAME: f32 = 200.0;
 /// Height of a line of the sentence about the example under the mouse, which takes two lines in a narrow
-/// dialog.
+/// dialog, and the space around it.
 const LINE: f32 = 20.0;
+const AROUND: Vec2 = vec2(12.0, 8.0);
 /// Number of pictures that are decoded in one frame of the window: more would be felt.
 const DECODED_AT_ONCE: usize = 2;
 
@@ -70,8 +71,9 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
         }
     });
     pictures.keep(ui);
+    ui.add_space(4.0);
     let lines = if columns == MOST_COLUMNS { 1.0 } else { 2.0 };
-    let size = vec2(pictures_width, LINE * lines + 4.0);
+    let size = vec2(pictures_width, LINE * lines + 2.0 * AROUND.y);
     let sentence = ui.allocate_exact_size(size, Sense::hover()).0;
     say(ui, sentence, pointed);
 }
@@ -86,14 +88,13 @@ fn say(ui: &mut Ui, rect: Rect, example: Option<Example>) {
         Some(example) => {
             add(RichText::new(format!("{}: ", example.title)).strong());
             add(RichText::new(example.sentence));
+            add(RichText::new("  Click to open.").weak());
         }
-        None => add(RichText::new(
-            "Point at a picture to see it move, and click it to open the example.",
-        )),
+        None => add(RichText::new("Point at a picture to see it move, click it to open it.")),
     }
-    let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
+    ui.painter().rect_filled(rect, 6.0, ui.visuals().faint_bg_color);
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(rect.shrink2(AROUND)));
     inside.set_clip_rect(rect.intersect(ui.clip_rect()));
-    inside.add_space(4.0);
     inside.add(Label::new(sentence).wrap().selectable(false));
 }
 

@@ -65,7 +65,8 @@ pub(in crate::ui) fn ui(
         dialog,
         Dialog::About | Dialog::Shortcuts | Dialog::Glossary | Dialog::Examples(_)
     );
-    let closes = modal(ui, title, has_close, |ui| match dialog {
+    let backdrop = backdrop(dialog, ui.visuals().dark_mode);
+    let closes = modal(ui, title, (has_close, backdrop), |ui| match dialog {
         Dialog::About => about(ui, machine),
         Dialog::Shortcuts => shortcuts::ui(ui, session),
         Dialog::Glossary => glossary::dialog(ui, actions),
@@ -122,23 +123,30 @@ fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
     now != before
 }
 
-/// What covers the window behind a modal one: in each theme a shade between those of its text and its
-/// panels, so that neither is seen.
-fn backdrop(is_dark: bool) -> Color32 {
-    const OPACITY: u8 = 215;
-    let [r, g, b] = if is_dark { [0, 0, 0] } else { [86, 94, 106] };
-    Color32::from_rgba_unmultiplied(r, g, b, OPACITY)
+/// What covers the window behind a modal one: a page of examples all of it, since words that the page
+/// cuts off would be read; a question lets what it is about be seen.
+fn backdrop(dialog: &Dialog, is_dark: bool) -> Color32 {
+    match (dialog, is_dark) {
+        (Dialog::Examples(_), true) => Color32::from_rgb(0x13, 0x15, 0x19),
+        (Dialog::Examples(_), false) => Color32::from_rgb(0xdd, 0xe2, 0xe8),
+        (_, true) => Color32::from_black_alpha(150),
+        (_, false) => Color32::from_black_alpha(100),
+    }
 }
 
 /// Shows `contents` in a modal window, with a cross that closes it if there is nothing to answer.
 /// Returns whether the cross was pressed.
-fn modal(ui: &Ui, title: &str, has_close: bool, contents: impl FnOnce(&mut Ui)) -> bool {
+fn modal(
+    ui: &Ui,
+    title: &str,
+    (has_close, backdrop): (bool, Color32),
+    contents: impl FnOnce(&mut Ui),
+) -> bool {
     let style = ui.global_style();
     let frame = Frame::window(&style).inner_margin(16.0);
     let id = Id::unique(("dialog", title.to_owned()));
     let area = Modal::default_area(id).fade_in(false);
-    let modal =
-        Modal::new(id).area(area).frame(frame).backdrop_color(backdrop(style.visuals.dark_mode));
+    let modal = Modal::new(id).area(area).frame(frame).backdrop_color(backdrop);
     modal.show(ui.ctx(), |ui| titled(ui, title, has_close, contents)).inner
 }
 

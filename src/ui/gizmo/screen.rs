@@ -134,12 +134,9 @@ pub(in crate::ui) fn aims(
     screen: &ScreenProjection,
     session: &Session,
 ) {
-    const DASH: f32 = 6.0;
     /// Distance of a name from its point.
     const GAP: f32 = 16.0;
     const BELOW_HANDLES: f32 = 40.0;
-    /// Distance of the line from the joint.
-    const OUTSIDE: f32 = 44.0;
     let pose = &session.posed().evaluated_skeleton().solved;
     let selected = session.selection().active();
     for target in session.rig().targets.iter().filter(|target| target.is_posing()) {
@@ -148,12 +145,7 @@ pub(in crate::ui) fn aims(
         let middle = pose.base(target.joint).midpoint(pose.tip(target.joint));
         let ends = [middle, point].map(|end| screen.place(end));
         let [Some(from), Some(to)] = ends else { continue };
-        // Outside of the body.
-        let from = from + (to - from).normalized() * OUTSIDE.min(0.5 * from.distance(to));
         let is_selected = selected == Some(target.joint);
-        let weak = ui.visuals().weak_text_color();
-        let stroke = Stroke::new(1.5, if is_selected { style::accent(ui) } else { weak });
-        painter.extend(Shape::dashed_line(&[from, to], stroke, DASH, DASH));
         let has_name = session.shown().display.shows(Overlay::Labels);
         if let Some(joint) = session.rig().skeleton.joint(target.joint).filter(|_| has_name) {
             let text = format!("{} aims here", joint.name);

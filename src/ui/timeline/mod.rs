@@ -17,7 +17,7 @@ pub(in crate::ui) use transport_bar::HEIGHT as TRANSPORT_HEIGHT;
 use egui::{Rect, Ui};
 
 use crate::session::{Actions, Session};
-use rows::{FoldedJoints, TimelineAreas};
+use rows::{Folds, TimelineAreas};
 use time_scale::TimeScale;
 
 /// Shows the transport bar, with a ruler of its own while the timeline is closed.
@@ -32,11 +32,11 @@ pub(in crate::ui) fn transport(ui: &mut Ui, session: &Session, actions: &mut Act
 /// Height at first of the timeline of a document, in points: enough for its rows, up to some whole
 /// rows, and for curves to be read.
 pub(in crate::ui) fn height(ui: &Ui, session: &Session) -> f32 {
-    const ROWS: (usize, usize) = (5, 7);
-    const OF_CURVES: usize = 11;
+    const ROWS: (usize, usize) = (4, 7);
+    const OF_CURVES: usize = 9;
     let rows = match session.preferences().curves {
         true => OF_CURVES,
-        false => rows::rows(session, &FoldedJoints::kept(ui)).len() + 1,
+        false => rows::rows(session, &Folds::kept(ui)).len(),
     };
     let most = if session.preferences().curves { OF_CURVES } else { ROWS.1 };
     rows::RULER + rows::ROW * rows.clamp(ROWS.0, most) as f32 + 8.0

@@ -1,6 +1,6 @@
 //! The areas of the timeline on screen; its rows, their keys, and clicks on their names.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use egui::{Color32, FontId, Id, Rect, Response, StrokeKind, TextStyle, Ui, UiBuilder, pos2, vec2};
 use glam::Vec3;
@@ -18,6 +18,8 @@ pub(super) const RULER: f32 = 24.0;
 pub(super) const VALUES: f32 = 42.0;
 /// Height of a row in points.
 pub(super) const ROW: f32 = 20.0;
+/// Number of channels with keys up to which all are shown at first.
+const MOST_CHANNELS: usize = 8;
 
 /// Moves the keyboard focus to the ruler if the mouse is pressed or clicked in `area`. The ruler
 /// has the keyboard focus for the whole timeline.
@@ -64,12 +66,9 @@ pub(super) fn paint_state(ui: &Ui, rect: Rect, is_selected: bool, row: &Response
     }
 }
 
-/// Shows a sentence in weak colour in the middle of an empty timeline.
-pub(in crate::ui) fn hint(ui: &mut Ui, areas: &TimelineAreas, sentence: &str) {
-    let rect = Rect::from_center_size(
-        areas.keys.center(),
-        vec2(areas.keys.width(), ROW).min(areas.keys.size()),
-    );
+/// Shows a sentence in weak colour in the middle of an empty area.
+pub(in crate::ui) fn hint(ui: &mut Ui, area: Rect, sentence: &str) {
+    let rect = Rect::from_center_size(area.center(), vec2(area.width(), ROW).min(area.size()));
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
         ui.centered_and_justified(|ui| {
             let text = egui::RichText::new(sentence).weak();
@@ -103,12 +102,10 @@ pub(in crate::ui) fn named(ui: &Ui, rect: Rect, [joint, channel]: [&str; 2], col
 /// A row with the keys of all channels, of all of a joint, or of one channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::ui) enum DopeSheetRow {
-    All,
+    /// The heading of all others.
+    All { is_folded: bool },
     /// The heading of a joint with several channels that have keys.
-    Joint {
-        joint: JointId,
-        is_folded: bool,
-    },
+    Joint { joint: JointId, is_folded: bool },
     Channel {
         channel: Channel,
         /// True if it stands below the heading of its joint.
@@ -116,42 +113,77 @@ pub(in crate::ui) enum DopeSheetRow {
     },
 }
 
-/// The names of the joints whose rows are folded.
+/// What the user has folded or unfolded.
 #[derive(Clone, Default)]
-pub(in crate::ui) struct FoldedJoints(HashSet<String>);
+pub(in crate::ui) struct Folds {
+    /// By the names of joints, whether their rows are folded.
+    joints: HashMap<String, bool>,
+    /// True if the rows of most joints are hidden, see [`rows`]; `None` if the number of channels
+    /// decides.
+    all: Option<bool>,
+}
 
-impl FoldedJoints {
+impl Folds {
     fn id() -> Id {
-        Id::unique("folded joints of the timeline")
+        Id::unique("folded rows of the timeline")
     }
 
     pub fn kept(ui: &Ui) -> Self {
         ui.data(|data| data.get_temp(Self::id())).unwrap_or_default()
     }
 
-    /// Folds a joint, or unfolds it.
-    pub fn toggle(ui: &Ui, name: &str) {
-        let mut folded = Self::kept(ui);
-        if !folded.0.remove(name) {
-            folded.0.insert(name.to_owned());
-        }
-        ui.data_mut(|data| data.insert_temp(Self::id(), folded));
+    fn keep(self, ui: &Ui) {
+        ui.data_mut(|data| data.insert_temp(Self::id(), self));
+    }
+
+    /// Folds the rows of a joint, or unfolds them.
+    pub fn fold_joint(ui: &Ui, name: &str, is_folded: bool) {
+        let mut folds = Self::kept(ui);
+        folds.joints.insert(name.to_owned(), is_folded);
+        folds.keep(ui);
+    }
+
+    /// Hides the rows of most joints, or shows those of all.
+    pub fn fold_all(ui: &Ui, is_folded: bool) {
+        Self { all: Some(is_folded), ..Self::kept(ui) }.keep(ui);
+    }
+
+    /// True if the rows of most joints are hidden: at first where all would not be seen at once.
+    fn hides_most(&self, channels: usize) -> bool {
+        self.all.unwrap_or(channels > MOST_CHANNELS)
     }
 }
 
-/// The rows below that of all keys: those of channels without a joint, then joint by joint in the
-/// order of the skeleton. A joint with several channels has a heading.
-pub(in crate::ui) fn rows(session: &Session, folded: &FoldedJoints) -> Vec<DopeSheetRow> {
+/// The row of all keys, and below it those of channels without a joint, then joint by joint in the
+/// order of the skeleton. If the row of all keys is folded, only those of the selected joints or, if
+/// none is selected, the folded ones of joints with targets. A joint with several channels has a
+/// heading. Empty without keys.
+pub(in crate::ui) fn rows(session: &Session, folds: &Folds) -> Vec<DopeSheetRow> {
+    let channels = channels(session);
+    if channels.is_empty() {
+        return Vec::new();
+    }
+    let is_folded = folds.hides_most(channels.len());
+    let selected = session.selection().joints();
+    let rig = session.rig();
+    let is_shown = |joint: JointId| match selected {
+        [] => rig.target_of_end(joint).is_some(),
+        _ => selected.contains(&joint),
+    };
     let mut of_joint: BTreeMap<Option<JointId>, Vec<Channel>> = BTreeMap::new();
-    for channel in channels(session) {
-        of_joint.entry(session.document().joint_of(channel)).or_default().push(channel);
+    for channel in channels {
+        let joint = session.document().joint_of(channel);
+        if !is_folded || joint.is_some_and(is_shown) {
+            of_joint.entry(joint).or_default().push(channel);
+        }
     }
     let skeleton = session.skeleton();
-    let mut rows = Vec::new();
+    let mut rows = vec![DopeSheetRow::All { is_folded }];
     for (joint, channels) in of_joint {
         let heading = joint.filter(|_| channels.len() > 1);
         let name = heading.and_then(|joint| skeleton.joint(joint)).map(|joint| &joint.name);
-        let is_folded = name.is_some_and(|name| folded.0.contains(name));
+        let at_first = is_folded && selected.is_empty();
+        let is_folded = name.and_then(|name| folds.joints.get(name).copied()).unwrap_or(at_first);
         rows.extend(heading.map(|joint| DopeSheetRow::Joint { joint, is_folded }));
         let is_below = heading.is_some();
         let row = |channel| DopeSheetRow::Channel { channel, is_below };
@@ -188,7 +220,7 @@ impl DopeSheetRow {
     fn tracks(self, session: &Session) -> Vec<(Channel, &Spline<Vec3>)> {
         let keys = &session.document().keys;
         match self {
-            Self::All => keys.tracks().collect(),
+            Self::All { .. } => keys.tracks().collect(),
             Self::Joint { joint, .. } => {
                 let is_below = |channel| session.document().joint_of(channel) == Some(joint);
                 keys.tracks().filter(|(channel, _)| is_below(*channel)).collect()
@@ -206,7 +238,7 @@ impl DopeSheetRow {
             Self::Joint { .. } => {
                 self.tracks(session).into_iter().map(|(channel, _)| channel).collect()
             }
-            Self::All => KeysEdit::keyed_channels(session.shown()).collect(),
+            Self::All { .. } => KeysEdit::keyed_channels(session.shown()).collect(),
         }
     }
 }
@@ -260,7 +292,7 @@ impl KeySet {
     pub fn has(&self, row: DopeSheetRow, time: f64) -> bool {
         let bits = (time + 0.0).to_bits();
         match row {
-            DopeSheetRow::All => self.times.contains(&bits),
+            DopeSheetRow::All { .. } => self.times.contains(&bits),
             DopeSheetRow::Joint { joint, .. } => self.joints.contains(&(joint, bits)),
             DopeSheetRow::Channel { channel, .. } => self.has_key((channel, time)),
         }

@@ -21,7 +21,7 @@ pub(in crate::ui) const HEIGHT: f32 = 28.0;
 /// Shows the bar of the closed timeline.
 pub(in crate::ui) fn slim(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     /// Width in points of the button at the right end.
-    const OPEN: f32 = 84.0;
+    const OPEN: f32 = 70.0;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.set_height(HEIGHT);
@@ -32,9 +32,10 @@ pub(in crate::ui) fn slim(ui: &mut Ui, session: &Session, actions: &mut Actions)
         ui.add_space(GAP);
         seconds(ui, session, actions);
         ui.add_space(GAP);
-        let size = vec2((ui.available_width() - OPEN).max(0.0), rows::RULER);
-        let (_, rect) = ui.allocate_space(size);
+        let width = ui.available_width() - GAP - OPEN;
+        let (_, rect) = ui.allocate_space(vec2(width.max(0.0), rows::RULER));
         rail(ui, session, rect, actions);
+        ui.add_space(GAP);
         let tooltip = "Show keys over time";
         if widgets::button(ui, "Timeline", tooltip, None) {
             actions.push(ViewAction::ShowTimeline(true));
@@ -115,7 +116,7 @@ fn repeat(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let looping = session.playback().is_looping();
     let tooltip = "Repeat from the start when playback reaches the end";
     let (on, disabled) = (Some(looping), nothing_to_play(session));
-    if (IconButton { icon: Icon::Loop, name: "Loop", tooltip, on, disabled }).show(ui) {
+    if (IconButton { on, ..IconButton::new(Icon::Loop, "Loop", tooltip, disabled) }).show(ui) {
         actions.push(PlaybackAction::SetLooping(!looping));
     }
 }

@@ -12,8 +12,9 @@ use crate::document::{Channel, Quantity};
 
 use crate::ui::widgets::text;
 
-/// Part of the height that is left free above and below the curves.
-const ROOM: f64 = 0.12;
+/// Part of the height that is left free above the highest number and below the lowest, so that they
+/// can be written whole.
+const ROOM: f64 = 0.1;
 
 /// The unit of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -119,9 +120,14 @@ struct StoredScales {
 }
 
 impl ValueScales {
-    /// The scales that show all displayed values of each kind.
-    pub fn fitting<I: Iterator<Item = f64>>(lanes: Lanes, values: impl Fn(ValueKind) -> I) -> Self {
-        Self { ranges: ValueKind::ALL.map(|kind| fitted(values(kind))), lanes }
+    /// The scales that show all displayed values of each kind between two numbers of the axis.
+    pub fn fitting<I: Iterator<Item = f64>>(
+        lanes: Lanes,
+        plot: Rect,
+        values: impl Fn(ValueKind) -> I,
+    ) -> Self {
+        let height = |kind| lanes.lane(kind, plot).height();
+        Self { ranges: ValueKind::ALL.map(|kind| fitted(values(kind), height(kind))), lanes }
     }
 
     /// The scales that the user has set for the curves of `channels`; `None` if there are none.
@@ -209,18 +215,35 @@ impl ValueScales {
     }
 }
 
-/// A range with all values, and free room on both sides.
-fn fitted(values: impl Iterator<Item = f64>) -> (f64, f64) {
+/// A range with all values and the numbers of an axis of this height next to them, and free room on
+/// both sides.
+fn fitted(values: impl Iterator<Item = f64>, height: f32) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))
     });
     if low > high {
         return (0.0, 1.0);
     }
-    let least = (ROOM * (high - low)).max(1e-6 * low.abs().max(high.abs())).max(1e-6);
-    // A constant value lies in the middle.
-    let room = if high - low < least { 0.5 * least + 0.5 } else { least };
-    (low - room, high + room)
+    let least = (1e-6 * low.abs().max(high.abs())).max(1e-6);
+    if high - low < least {
+        // A constant value lies in the middle.
+        let room = least + 0.5;
+        return (low - room, high + room);
+    }
+    // A greater range may need numbers that are farther apart, which may make it greater still.
+    const MOST_TRIES: usize = 8;
+    let mut range = (low, high);
+    for _ in 0..MOST_TRIES {
+        let step = step(range, height);
+        let [first, last] = [(low / step).floor() * step, (high / step).ceil() * step];
+        let room = ROOM * (last - first);
+        let next = (first - room, last + room);
+        if next == range {
+            break;
+        }
+        range = next;
+    }
+    range
 }
 
 fn id() -> Id {
@@ -244,8 +267,8 @@ pub(super) struct ChannelCurve {
 
 /// Minimum distance in points between labels.
 const BETWEEN: f32 = 16.0;
-/// Distance in points from the top of a lane to its first label, below the unit.
-const BELOW_UNIT: f32 = 22.0;
+/// Least distance in points between a label and the upper and lower end of its lane.
+const FROM_END: f32 = 5.0;
 /// Distance in points between the plot and the labels.
 const GAP: f32 = 5.0;
 
@@ -268,9 +291,6 @@ pub(in crate::ui::timeline) fn axes(
         let (name, unit) = kind.unit(metres_per_unit);
         let shared = shared_colour(curves, kind);
         let x = plot.left() - GAP;
-        let colour = shared.unwrap_or(ui.visuals().text_color());
-        let font = TextStyle::Body.resolve(ui.style());
-        ui.painter().text(pos2(x, lane.top() + 2.0), Align2::RIGHT_TOP, unit, font, colour);
         let marks = marks(scales.range(kind), lane.height());
         let colour = shared.unwrap_or(ui.visuals().weak_text_color());
         let font = TextStyle::Small.resolve(ui.style());
@@ -278,9 +298,9 @@ pub(in crate::ui::timeline) fn axes(
             let y = scales.y(kind, mark, plot);
             let across = Stroke::new(1.0, line.color.gamma_multiply(0.5));
             ui.painter().with_clip_rect(lane).hline(lane.x_range(), y, across);
-            // The unit stands above the labels.
-            if y > lane.top() + BELOW_UNIT && y < lane.bottom() - 6.0 {
-                let text = written(mark, marks.step);
+            if y > lane.top() + FROM_END && y < lane.bottom() - FROM_END {
+                let sign = if kind == ValueKind::Angle { "°" } else { "" };
+                let text = written(mark, marks.step) + sign;
                 ui.painter().text(pos2(x, y), Align2::RIGHT_CENTER, text, font.clone(), colour);
             }
         }
@@ -313,10 +333,15 @@ struct Marks {
 }
 
 fn marks((low, high): (f64, f64), height: f32) -> Marks {
-    let step = round_step((high - low) * f64::from((BETWEEN / height.max(1.0)).min(1.0)));
+    let step = step((low, high), height);
     let first = (low / step).ceil();
     let count = ((high / step).floor() - first + 1.0).clamp(0.0, 1_000.0) as usize;
     Marks { first, step, count }
+}
+
+/// Distance between the numbers on an axis of this range and height.
+fn step((low, high): (f64, f64), height: f32) -> f64 {
+    round_step((high - low) * f64::from((BETWEEN / height.max(1.0)).min(1.0)))
 }
 
 impl Marks {

@@ -71,6 +71,8 @@ pub(in crate::ui) struct IconButton<'a> {
     /// State of a toggle; `None` for other buttons.
     pub on: Option<bool>,
     pub disabled: Option<&'a str>,
+    /// True if its ground is painted only under the mouse.
+    pub is_quiet: bool,
 }
 
 impl<'a> IconButton<'a> {
@@ -79,7 +81,12 @@ impl<'a> IconButton<'a> {
 
     /// A button that is not a toggle.
     pub fn new(icon: Icon, name: &'a str, tooltip: &'a str, disabled: Option<&'a str>) -> Self {
-        Self { icon, name, tooltip, on: None, disabled }
+        Self { icon, name, tooltip, on: None, disabled, is_quiet: false }
+    }
+
+    /// The button without a ground, for a row of several beside a title.
+    pub fn quiet(self) -> Self {
+        Self { is_quiet: true, ..self }
     }
 
     /// Shows the button and returns whether it was pressed.
@@ -103,13 +110,10 @@ impl<'a> IconButton<'a> {
         let visuals = ui.style().interact_selectable(&response, on);
         let painter = ui.painter();
         let round = visuals.corner_radius;
-        painter.rect(
-            rect,
-            round,
-            visuals.weak_bg_fill,
-            visuals.bg_stroke,
-            egui::StrokeKind::Inside,
-        );
+        if !self.is_quiet || response.hovered() || response.has_focus() {
+            let (fill, stroke) = (visuals.weak_bg_fill, visuals.bg_stroke);
+            painter.rect(rect, round, fill, stroke, egui::StrokeKind::Inside);
+        }
         self.icon.paint(painter, rect.center(), visuals.fg_stroke.color);
         response
     }

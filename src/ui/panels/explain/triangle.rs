@@ -82,9 +82,9 @@ impl TriangleDrawing {
         let widest = (right - left).max(limb.frames.bones().outer_limit() * 0.7);
         let scale = (inside.width() / widest).min(inside.height() / pose.out.max(1e-9));
         let middle = (left + right) / 2.0;
-        // The Pointer keeps its height while the elbow moves.
-        let place =
-            |along: f32, out: f32| inside.center_bottom() + vec2(along - middle, -out) * scale;
+        let place = |along: f32, out: f32| {
+            inside.center() + vec2(along - middle, 0.5 * pose.out - out) * scale
+        };
         let palette = style::palette(ui);
         Self {
             shoulder: place(0.0, 0.0),

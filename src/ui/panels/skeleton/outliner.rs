@@ -20,9 +20,10 @@ const INDENT: f32 = 13.0;
 const TRIANGLE: f32 = 14.0;
 /// Number of children from which a joint that has a parent is folded at first: fingers, for example.
 const FOLDED_FROM: usize = 4;
-/// Number of rows to which a larger tree is folded at first, so that none has to be scrolled to; fewer
-/// in a low window.
+/// Number of joints up to which a figure is shown whole at first, and number of rows to which a
+/// larger one is folded, so that the properties below need not be scrolled; fewer in a low window.
 const MOST_ROWS: usize = 12;
+const FOLDED_ROWS: usize = 8;
 
 const NONE_SELECTED: &str = "Select a joint first";
 
@@ -36,11 +37,12 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
     // The panel around it has a margin.
     let frame = Frame::side_top_panel(ui.style());
     let whole = AROUND + ROW * session.skeleton().joints().len() as f32;
-    let most_rows = ((HEIGHT.min(first) - AROUND) / ROW) as usize;
-    let (deepest, rows) = seen_at_first(session.skeleton(), most_rows);
+    let is_whole = whole <= HEIGHT.min(first);
+    let most_rows = if is_whole { MOST_ROWS } else { ((first - AROUND) / ROW) as usize };
+    let (deepest, rows) = seen_at_first(session.skeleton(), most_rows.min(FOLDED_ROWS));
     let open = frame.inner_margin(Margin::symmetric(0, 4));
     let panel = match state.is_open() {
-        true if whole <= HEIGHT.min(first) => {
+        true if is_whole => {
             Panel::top("whole outliner").resizable(false).exact_size(whole).frame(open)
         }
         true => Panel::top(Id::unique(("outliner", rows)))
@@ -50,22 +52,20 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
             .frame(open),
         false => Panel::top("folded outliner")
             .resizable(false)
-            .show_separator_line(false)
             .frame(frame.inner_margin(Margin { bottom: 6, ..Margin::ZERO })),
     };
-    panel.show(ui, |ui| {
-        let filter = heading(ui, session, &mut state);
+    panel.show_separator_line(false).show(ui, |ui| {
+        heading(ui, session, &mut state, actions);
         if state.is_open() {
-            buttons(ui, session, actions);
-            ui.add_space(4.0);
+            let filter = filter(ui);
             tree(ui, session, &filter, deepest, actions);
         }
     });
     state.store(ui);
 }
 
-/// Height around the tree in the open panel: title, buttons and legend, in points.
-const AROUND: f32 = 100.0;
+/// Height around the tree in the open panel: title, filter and margins, in points.
+const AROUND: f32 = 78.0;
 /// Least number of rows of the open panel, and its greatest height at first in points.
 const LEAST_ROWS: f32 = 3.0;
 const HEIGHT: f32 = AROUND + MOST_ROWS as f32 * ROW;
@@ -75,10 +75,8 @@ fn whole_rows(height: f32) -> f32 {
     AROUND + ROW * ((height - AROUND) / ROW).floor().max(LEAST_ROWS)
 }
 
-/// Shows the title and the filter, and returns what is typed there.
-fn heading(ui: &mut Ui, session: &Session, state: &mut CollapsingState) -> String {
-    let typed = ui.make_persistent_id("filter of joints");
-    let mut filter: String = ui.data(|data| data.get_temp(typed)).unwrap_or_default();
+/// Shows the title and, while the tree is open, the buttons that edit it.
+fn heading(ui: &mut Ui, session: &Session, state: &mut CollapsingState, actions: &mut Actions) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         let title = format!("Joints ({})", session.skeleton().joints().len());
@@ -96,13 +94,19 @@ fn heading(ui: &mut Ui, session: &Session, state: &mut CollapsingState) -> Strin
             state.toggle(ui);
         }
         if is_open {
-            ui.add_space(8.0);
-            let edit = TextEdit::singleline(&mut filter).hint_text("Filter");
-            let edit = ui.add(edit.desired_width(ui.available_width() - 12.0));
-            widgets::name(ui, &edit, "Filter joints");
-            edit.on_hover_text("Show only joints whose names contain this text");
+            widgets::at_right(ui, |ui| buttons(ui, session, actions));
         }
     });
+}
+
+/// Shows the filter, and returns what is typed there.
+fn filter(ui: &mut Ui) -> String {
+    let typed = ui.make_persistent_id("filter of joints");
+    let mut filter: String = ui.data(|data| data.get_temp(typed)).unwrap_or_default();
+    let edit = TextEdit::singleline(&mut filter).hint_text("Filter");
+    let edit = ui.add(edit.desired_width(f32::INFINITY));
+    widgets::name(ui, &edit, "Filter joints");
+    edit.on_hover_text("Show only joints whose names contain this text");
     ui.data_mut(|data| data.insert_temp(typed, filter.clone()));
     filter
 }
@@ -137,10 +141,12 @@ fn tree(ui: &mut Ui, session: &Session, filter: &str, deepest: usize, actions: &
     let rows = rows(session, filter, deepest, &folds);
     // Contents that were higher than the panel would make it grow.
     let whole = ui.available_rect_before_wrap();
-    let lines = if whole.width() < ONE_LINE { 2.0 } else { 1.0 };
-    let (above, below) = whole.split_top_bottom_at_y(whole.bottom() - lines * LEGEND);
+    let inside = whole.shrink2(vec2(0.0, LIST_MARGIN));
     // Whole rows.
-    let above = above.with_max_y(above.top() + (above.height() / ROW).floor() * ROW);
+    let above = inside.with_max_y(inside.top() + (inside.height() / ROW).floor() * ROW);
+    ui.painter().rect_filled(whole, 6.0, ui.visuals().extreme_bg_color);
+    let list = ui.interact(above, ui.make_persistent_id("list of joints"), Sense::hover());
+    list.widget_info(|| WidgetInfo::labeled(Role::List, true, "Joints as a tree"));
     let mut inside = ui.new_child(UiBuilder::new().max_rect(above));
     let area = ScrollArea::both().auto_shrink([false, false]);
     let mut pointed = None;
@@ -166,20 +172,17 @@ fn tree(ui: &mut Ui, session: &Session, filter: &str, deepest: usize, actions: &
         data.insert_temp(said, pointed.is_some());
         data.insert_temp(kept, folds);
     });
-    let mut inside = ui.new_child(UiBuilder::new().max_rect(below));
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(above));
     if session.skeleton().joints().is_empty() {
         inside.weak("No joints. Add a root to start.");
     } else if rows.is_empty() {
         inside.weak("No joint has such a name.");
-    } else {
-        legend(&mut inside);
     }
     ui.advance_cursor_after_rect(whole);
 }
 
-/// Height of a line of the legend, and width that it needs to be one line, in points.
-const LEGEND: f32 = 20.0;
-const ONE_LINE: f32 = 236.0;
+/// Space above and below the rows, in points.
+const LIST_MARGIN: f32 = 4.0;
 
 /// Unfolds the joints above one that has just been selected.
 fn unfold_above_new(ui: &Ui, session: &Session, folds: &mut Folds) {
@@ -332,12 +335,11 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow, folds: &mut Folds) ->
     }
     let at = pos2(rect.left() + indent + TRIANGLE + 6.0, rect.center().y);
     let palette = style::palette(ui);
-    if joint.locked {
-        locked_dot(painter, at, style::colour(palette.joint));
-    } else {
-        let colour = palette.upper.mixed(palette.accent, row.influence);
-        free_dot(painter, at, style::colour(colour));
-    }
+    let colour = match joint.locked {
+        true => palette.joint,
+        false => palette.upper.mixed(palette.accent, row.influence),
+    };
+    pose_mark(painter, at, style::colour(colour), row, joint.locked);
     let text = match (selected, row.is_found) {
         (true, _) => visuals.strong_text_color(),
         (false, true) => visuals.text_color(),
@@ -350,16 +352,14 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow, folds: &mut Folds) ->
         target_mark(painter, centre, colour);
     }
     reveal(ui, session, row, &response);
-    let mut said = vec![format!("Select {}", joint.name)];
-    if joint.locked {
-        said.push("locked".to_owned());
-    }
-    if row.influence > 0.0 {
-        said.push("posed by a target".to_owned());
-    }
-    if row.target.is_some() {
-        said.push("has a target".to_owned());
-    }
+    let select = format!("Select {}", joint.name);
+    let mut said = vec![select.as_str()];
+    said.push(match (joint.locked, row.influence > 0.0) {
+        (true, _) => "locked to its parent",
+        (false, true) => "posed by a target (IK)",
+        (false, false) => "posed by its own angles (FK)",
+    });
+    said.extend(row.target.map(|_| "has a target"));
     response.on_hover_text(format!("{}. Double-click to rename", said.join(", ")))
 }
 
@@ -369,39 +369,20 @@ fn toggles(ui: &Ui, is_folded: bool) -> bool {
     ui.input(|input| input.key_pressed(key))
 }
 
-fn free_dot(painter: &Painter, at: Pos2, colour: Color32) {
-    painter.circle_filled(at, 3.0, colour);
-}
-
-fn locked_dot(painter: &Painter, at: Pos2, colour: Color32) {
-    painter.circle_stroke(at, 2.5, (1.2, colour));
+/// Paints what poses a joint: a dot for its own angles, a diamond for targets, a ring if it is locked.
+fn pose_mark(painter: &Painter, at: Pos2, colour: Color32, row: &OutlinerRow, is_locked: bool) {
+    if is_locked {
+        painter.circle_stroke(at, 2.5, (1.2, colour));
+    } else if row.influence > 0.0 {
+        painter.add(widgets::diamond(at, 4.0, colour, Stroke::NONE));
+    } else {
+        painter.circle_filled(at, 3.0, colour);
+    }
 }
 
 fn target_mark(painter: &Painter, at: Pos2, colour: Color32) {
     painter.circle_stroke(at, 4.5, (1.5, colour));
     painter.circle_filled(at, 1.5, colour);
-}
-
-/// Says what the marks of the rows mean.
-fn legend(ui: &mut Ui) {
-    let palette = style::palette(ui);
-    let [free, posed, locked] = [palette.upper, palette.accent, palette.joint].map(style::colour);
-    type MarkPainter = fn(&Painter, Pos2, Color32);
-    let marks: [(MarkPainter, Color32, &str, &str); 4] = [
-        (free_dot, free, "FK", "Posed by its own angles"),
-        (free_dot, posed, "IK", "Posed by a target"),
-        (locked_dot, locked, "locked", "Moves with its parent"),
-        (target_mark, posed, "target", "Has a target at its tip"),
-    ];
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(3.0, 2.0);
-        for (mark, colour, name, meaning) in marks {
-            let (rect, _) = ui.allocate_exact_size(vec2(12.0, 14.0), Sense::hover());
-            mark(ui.painter(), rect.center(), colour);
-            ui.label(RichText::new(name).weak().size(11.0)).on_hover_text(meaning);
-            ui.add_space(6.0);
-        }
-    });
 }
 
 /// Scrolls to the row when its joint becomes selected, and moves the keyboard focus to the row if
@@ -468,36 +449,34 @@ fn respond(
 fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let selected = session.selection().active();
     let none = selected.is_none().then_some(NONE_SELECTED);
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        let tooltip = "Add a child joint (A, or Ctrl+click in the viewport)";
-        if IconButton::new(Icon::AddChild, "Add child", tooltip, None).show(ui) {
-            actions.push(JointEdit::AddJoint { tip: None });
-        }
-        let tooltip = "Add a root joint, the start of another tree";
-        if IconButton::new(Icon::AddRoot, "Add root", tooltip, None).show(ui) {
-            actions.push(JointEdit::AddRoot);
-        }
-        let tooltip = "Delete the selected joints (Delete)";
-        if IconButton::new(Icon::Delete, "Delete", tooltip, none).show(ui) {
-            actions.push(commands::delete(session));
-        }
-        let tooltip = "Rename the selected joint (F2)";
-        if IconButton::new(Icon::Rename, "Rename…", tooltip, none).show(ui)
-            && let Some(joint) = selected
-        {
-            actions.push(commands::rename(session, joint));
-        }
-        let has_target = selected.is_some_and(|joint| session.rig().target_of_end(joint).is_some());
-        let (icon, name, tooltip) = if has_target {
-            let tooltip = "Remove the target of the selected joint (T)";
-            (Icon::RemoveTarget, "Remove target", tooltip)
-        } else {
-            let tooltip = "Add a target for the selected joint's tip (T)";
-            (Icon::AddTarget, "Add target", tooltip)
-        };
-        if IconButton::new(icon, name, tooltip, none).show(ui) {
-            actions.extend(commands::toggle_target(session));
-        }
-    });
+    ui.spacing_mut().item_spacing.x = 0.0;
+    let tooltip = "Add a child joint (A, or Ctrl+click in the viewport)";
+    if IconButton::new(Icon::AddChild, "Add child", tooltip, None).quiet().show(ui) {
+        actions.push(JointEdit::AddJoint { tip: None });
+    }
+    let tooltip = "Add a root joint, the start of another tree";
+    if IconButton::new(Icon::AddRoot, "Add root", tooltip, None).quiet().show(ui) {
+        actions.push(JointEdit::AddRoot);
+    }
+    let tooltip = "Delete the selected joints (Delete)";
+    if IconButton::new(Icon::Delete, "Delete", tooltip, none).quiet().show(ui) {
+        actions.push(commands::delete(session));
+    }
+    let tooltip = "Rename the selected joint (F2)";
+    if IconButton::new(Icon::Rename, "Rename…", tooltip, none).quiet().show(ui)
+        && let Some(joint) = selected
+    {
+        actions.push(commands::rename(session, joint));
+    }
+    let has_target = selected.is_some_and(|joint| session.rig().target_of_end(joint).is_some());
+    let (icon, name, tooltip) = if has_target {
+        let tooltip = "Remove the target of the selected joint (T)";
+        (Icon::RemoveTarget, "Remove target", tooltip)
+    } else {
+        let tooltip = "Add a target for the selected joint's tip (T)";
+        (Icon::AddTarget, "Add target", tooltip)
+    };
+    if IconButton::new(icon, name, tooltip, none).quiet().show(ui) {
+        actions.extend(commands::toggle_target(session));
+    }
 }

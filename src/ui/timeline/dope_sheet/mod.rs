@@ -9,7 +9,7 @@ use egui::{
 };
 
 use super::context_menu;
-use super::rows::{self, DopeSheetRow, FoldedJoints, KeySet, ROW, TimelineAreas};
+use super::rows::{self, DopeSheetRow, Folds, KeySet, ROW, TimelineAreas};
 use super::time_scale::TimeScale;
 use crate::document::{Channel, Quantity};
 use crate::kinematics::skeleton::JointId;
@@ -22,7 +22,9 @@ use mouse::DopeSheetView;
 const SIZE: f32 = 5.0;
 /// The same for the key of one channel, below those of several.
 const OF_CHANNEL: f32 = 4.0;
-/// Half the height of a diamond among dense keys, in points.
+/// The same where keys are dense: at most this part of their mean distance, and at least a number of
+/// points.
+const DENSE: f32 = 0.15;
 const SMALLEST: f32 = 2.0;
 /// Space at the left of a name below a heading, in points.
 const INDENT: f32 = 12.0;
@@ -37,22 +39,31 @@ pub(in crate::ui) fn ui(
     ruler: &Response,
     actions: &mut Actions,
 ) {
-    let rows = rows::rows(session, &FoldedJoints::kept(ui));
-    if rows.is_empty() {
+    let rows = rows::rows(session, &Folds::kept(ui));
+    let Some((&all, rows)) = rows.split_first() else {
         let sentence = "No keys. Pose the rig and press K to add keys at the playhead";
-        rows::hint(ui, areas, sentence);
+        rows::hint(ui, areas.keys, sentence);
         return;
-    }
+    };
+    let shown = DopeSheet { session, scale, picked: KeySet::new(session), areas, ruler };
+    let first = Rect::from_min_size(areas.names.min, vec2(areas.whole.width(), ROW));
+    // Tab comes to the name at its left before it comes to the sheet.
+    shown.title(ui, all, first, actions);
     let body = ui.interact(areas.keys, Id::unique("timeline rows"), Sense::click_and_drag());
     body.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Dope sheet"));
-    let shown = DopeSheet { session, scale, picked: KeySet::new(session), areas, ruler };
-
-    let first = Rect::from_min_size(areas.names.min, vec2(areas.whole.width(), ROW));
-    shown.row(ui, DopeSheetRow::All, first, actions);
+    shown.row_keys(ui, all, first, actions);
     let rest = Rect::from_min_max(pos2(areas.whole.left(), first.bottom()), areas.whole.max);
-    let offset = shown.scrolled(ui, &rows, rest, actions);
+    let offset = shown.scrolled(ui, rows, rest, actions);
+    if rows.is_empty() {
+        let below = rest.intersect(areas.keys);
+        let sentence = match session.selection().joints() {
+            [] => "Select a joint to see its keys, or unfold all joints at the left",
+            _ => "No keys of the selected joints. Press K to add keys at the playhead",
+        };
+        rows::hint(ui, below, sentence);
+    }
 
-    let sheet = DopeSheetView { session, scale, rows: &rows, area: areas.keys, offset };
+    let sheet = DopeSheetView { session, scale, all, rows, area: areas.keys, offset };
     mouse::press(ui, &sheet, &body, ruler, actions);
     mouse::follow(ui, &sheet, actions);
     context_menu::of_rows(ui, &sheet, &body, actions);
@@ -99,29 +110,30 @@ impl DopeSheet<'_> {
                 for (nth, row) in rows.iter().enumerate().skip(first).take(count) {
                     let at = pos2(left, top + ROW * nth as f32);
                     let rect = Rect::from_min_size(at, vec2(rect.width(), ROW));
-                    self.row(ui, *row, rect, actions);
+                    self.title(ui, *row, rect, actions);
+                    self.row_keys(ui, *row, rect, actions);
                 }
             })
         });
         scroll.inner.state.clamped_offset().y
     }
 
-    fn row(&self, ui: &Ui, row: DopeSheetRow, rect: Rect, actions: &mut Actions) {
-        let split = self.areas.keys.left();
-        let name = Rect::from_min_max(rect.min, pos2(split, rect.bottom()));
-        let keys = Rect::from_min_max(pos2(split, rect.top()), rect.max);
+    /// Shows the name of a row, and the line below it.
+    fn title(&self, ui: &Ui, row: DopeSheetRow, rect: Rect, actions: &mut Actions) {
+        let name = rect.with_max_x(self.areas.keys.left());
         let line = ui.visuals().widgets.noninteractive.bg_stroke.color.gamma_multiply(0.6);
         ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, Stroke::new(1.0, line));
         match row {
-            DopeSheetRow::All => {
-                let name = name.with_min_x(name.left() + INDENT);
-                rows::line(ui, name, "All", ui.visuals().strong_text_color());
-            }
+            DopeSheetRow::All { is_folded } => self.heading_of_all(ui, is_folded, name),
             DopeSheetRow::Joint { joint, is_folded } => self.heading(ui, joint, is_folded, name),
             DopeSheetRow::Channel { channel, is_below } => {
                 self.name(ui, channel, is_below, name, actions);
             }
         }
+    }
+
+    fn row_keys(&self, ui: &Ui, row: DopeSheetRow, rect: Rect, actions: &mut Actions) {
+        let keys = rect.with_min_x(self.areas.keys.left());
         self.keys(ui, row, keys, actions);
         if let DopeSheetRow::Channel { channel, .. } = row
             && self.session.history().is_overridden(channel)
@@ -130,14 +142,35 @@ impl DopeSheet<'_> {
         }
     }
 
+    /// Shows the name of the row of all keys. A click hides the rows of most joints, or shows those of
+    /// all.
+    fn heading_of_all(&self, ui: &Ui, is_folded: bool, rect: Rect) {
+        let response = self.fold(ui, ["All", "Keys of all joints"], is_folded, rect);
+        if response.clicked() {
+            Folds::fold_all(ui, !is_folded);
+        }
+        response.on_hover_text(match is_folded {
+            true => "Show the channels of all joints",
+            false => "Show the channels of selected joints alone, or of joints with targets",
+        });
+    }
+
     /// Shows the name of a joint. A click folds or unfolds its rows.
     fn heading(&self, ui: &Ui, joint: JointId, is_folded: bool, rect: Rect) {
         let joints = &self.session.rig().skeleton;
         let name = joints.joint(joint).map_or("–", |joint| joint.name.as_str());
-        let response = ui.interact(rect, Id::unique(("timeline joint", joint)), Sense::click());
-        response.widget_info(|| {
-            WidgetInfo::selected(Role::Button, true, !is_folded, format!("Keys of {name}"))
-        });
+        let response = self.fold(ui, [name, &format!("Keys of {name}")], is_folded, rect);
+        if response.clicked() {
+            Folds::fold_joint(ui, name, !is_folded);
+        }
+        let verb = if is_folded { "Show" } else { "Hide" };
+        response.on_hover_text(format!("{verb} the channels of {name}"));
+    }
+
+    /// Shows a triangle with a name, and another name to the screen reader.
+    fn fold(&self, ui: &Ui, [name, said]: [&str; 2], is_folded: bool, rect: Rect) -> Response {
+        let response = ui.interact(rect, Id::unique(("timeline rows of", said)), Sense::click());
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, !is_folded, said));
         rows::paint_state(ui, rect, false, &response);
         let mark = pos2(rect.left() + 12.0, rect.center().y);
         widgets::fold_mark(ui.painter(), mark, is_folded, ui.visuals().weak_text_color());
@@ -145,10 +178,8 @@ impl DopeSheet<'_> {
         rows::line(ui, text, name, ui.visuals().strong_text_color());
         if response.clicked() {
             self.ruler.request_focus();
-            FoldedJoints::toggle(ui, name);
         }
-        let verb = if is_folded { "Show" } else { "Hide" };
-        response.on_hover_text(format!("{verb} the channels of {name}"));
+        response
     }
 
     /// Shows the name of a channel, without its joint if it stands below that. A click selects the
@@ -188,12 +219,17 @@ impl DopeSheet<'_> {
         let (from, to) = self.scale.range();
         let mut last = f32::NEG_INFINITY;
         let times: Vec<f64> = row.times(self.session, from, to);
+        // NaN for a single key, which has no limit then.
+        let ends = times.first().zip(times.last());
+        let mean_gap = ends.map_or(0.0, |(first, last)| self.scale.x(*last) - self.scale.x(*first))
+            / times.len().saturating_sub(1) as f32;
         for (index, &time) in times.iter().enumerate() {
             let x = self.scale.x(time);
             let neighbours = [index.checked_sub(1), Some(index + 1)].into_iter().flatten();
             let gaps =
                 neighbours.filter_map(|other| Some((self.scale.x(*times.get(other)?) - x).abs()));
-            let room = SMALLEST.max(0.5 * gaps.fold(f32::INFINITY, f32::min));
+            let gap = gaps.fold(f32::INFINITY, f32::min);
+            let room = SMALLEST.max((0.5 * gap).min(DENSE * mean_gap));
             let picked = self.picked.has(row, time);
             if x - last < 1.0 && !picked {
                 continue;
@@ -203,7 +239,9 @@ impl DopeSheet<'_> {
             last = x;
             let visuals = ui.visuals();
             let (plain, colour) = match row {
-                DopeSheetRow::All | DopeSheetRow::Joint { .. } => (SIZE, visuals.text_color()),
+                DopeSheetRow::All { .. } | DopeSheetRow::Joint { .. } => {
+                    (SIZE, visuals.weak_text_color())
+                }
                 DopeSheetRow::Channel { channel, .. } => (OF_CHANNEL, key_colour(ui, channel)),
             };
             let (size, fill, rim) = if picked {
@@ -229,7 +267,7 @@ impl DopeSheet<'_> {
     ) -> bool {
         let rect = Rect::from_center_size(at, vec2(2.0 * SIZE, 2.0 * SIZE + 2.0));
         let (id, said) = match row {
-            DopeSheetRow::All => {
+            DopeSheetRow::All { .. } => {
                 (Id::unique(("timeline keys", time.to_bits())), format!("Keys at {time:.2} s"))
             }
             DopeSheetRow::Joint { joint, .. } => {

@@ -16,7 +16,8 @@ const REACH: f32 = 7.0;
 pub(in crate::ui) struct DopeSheetView<'a> {
     pub session: &'a Session,
     pub scale: TimeScale,
-    /// The rows below that of all keys.
+    /// The row of all keys, which is not scrolled, and those below it.
+    pub all: DopeSheetRow,
     pub rows: &'a [DopeSheetRow],
     pub area: Rect,
     /// Scroll offset of these rows in points.
@@ -28,7 +29,7 @@ impl DopeSheetView<'_> {
     pub fn row(&self, at: Pos2) -> Option<DopeSheetRow> {
         let y = at.y - self.area.top();
         if y < ROW {
-            return Some(DopeSheetRow::All);
+            return Some(self.all);
         }
         let row = ((y - ROW + self.offset) / ROW).floor().max(0.0) as usize;
         self.rows.get(row).copied()
@@ -54,13 +55,26 @@ impl DopeSheetView<'_> {
     /// The keys within a range of times in seconds, in the rows whose centres are within a range of
     /// [`Self::content_y`].
     fn keys_in(&self, times: (f64, f64), ys: (f32, f32)) -> Vec<Key> {
+        // The row of all keys has those of the others too.
+        let all_y = self.offset - 0.5 * ROW;
+        if let DopeSheetRow::All { is_folded: true } = self.all
+            && (ys.0..=ys.1).contains(&all_y)
+        {
+            return self.keys_of(&[self.all], times);
+        }
         let centre = |row: usize| ROW * (row as f32 + 0.5);
         let rows = self.rows.iter().enumerate();
         let inside = rows.filter(|(row, _)| (ys.0..=ys.1).contains(&centre(*row)));
         // A heading has the keys of the rows below it, unless they are folded.
         let own =
             inside.filter(|(_, row)| !matches!(row, DopeSheetRow::Joint { is_folded: false, .. }));
-        let keys = own.flat_map(|(_, row)| {
+        let own: Vec<_> = own.map(|(_, row)| *row).collect();
+        self.keys_of(&own, times)
+    }
+
+    /// The keys of some rows within a range of times in seconds.
+    fn keys_of(&self, rows: &[DopeSheetRow], times: (f64, f64)) -> Vec<Key> {
+        let keys = rows.iter().flat_map(|row| {
             let found = row.times(self.session, times.0, times.1);
             found.into_iter().flat_map(|time| row.keys(self.session, time))
         });

@@ -1,8 +1,10 @@
 //! The names in the graph editor: joints, and below each its channels with the colours of their
-//! curves.
+//! curves; beside each lane those of its curves, where they have room there.
+
+use std::collections::BTreeSet;
 
 use egui::{
-    Align2, Color32, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, TextStyle, Ui, UiBuilder,
+    Align2, Color32, Id, Rect, Response, Role, ScrollArea, Sense, TextStyle, Ui, UiBuilder, Vec2,
     WidgetInfo, pos2, vec2,
 };
 
@@ -12,11 +14,13 @@ use crate::session::{Actions, SelectAction, Session};
 use crate::ui::labels;
 use crate::ui::timeline::context_menu;
 use crate::ui::timeline::rows::{self, ROW, TimelineAreas, VALUES};
-use crate::ui::timeline::value_scale::ValueKind;
+use crate::ui::timeline::value_scale::{Lanes, ValueKind};
 use crate::ui::widgets::AXES;
 
 /// Width in points of one colour beside a name, and of a letter x, y or z in its colour.
-const SWATCH: f32 = 6.0;
+const SWATCH: f32 = 10.0;
+/// Size of the square of a colour.
+const SQUARE: f32 = 8.0;
 const LETTER: f32 = 10.0;
 
 /// A listed channel, with the colours of its curves.
@@ -30,29 +34,67 @@ pub(in crate::ui::timeline) struct LegendEntry {
 pub(in crate::ui::timeline) fn ui(
     ui: &mut Ui,
     session: &Session,
-    areas: &TimelineAreas,
+    (areas, lanes): (&TimelineAreas, Lanes),
     entries: &[LegendEntry],
     ruler: &Response,
     actions: &mut Actions,
 ) {
-    let right = pos2(areas.names.right() - VALUES, areas.names.bottom());
-    let rect = Rect::from_min_max(areas.names.min, right);
-    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-        ScrollArea::vertical().id_salt("legend").auto_shrink(false).show(ui, |ui| {
-            ui.spacing_mut().item_spacing.y = 0.0;
-            let mut above = None;
-            for entry in entries {
-                let joint = session.document().joint_of(entry.channel);
-                if joint != above
-                    && let Some(joint) = joint
-                {
-                    joint_name(ui, session, joint, ruler, actions);
-                }
-                above = joint;
-                channel_name(ui, session, entry, ruler, actions);
-            }
+    let names = areas.names.with_max_x(areas.names.right() - VALUES);
+    let parts = beside_lanes(session, names, lanes, entries);
+    let mut above = None;
+    for (rect, entries) in parts.unwrap_or_else(|| vec![(names, entries.iter().collect())]) {
+        ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+            let top = rect.top().to_bits();
+            ScrollArea::vertical().id_salt(("legend", top)).auto_shrink(false).show(ui, |ui| {
+                list(ui, session, &entries, &mut above, ruler, actions);
+            });
         });
+    }
+}
+
+/// The place beside each lane with the names of its curves; `None` if some have no room there, or no
+/// lane.
+fn beside_lanes<'a>(
+    session: &Session,
+    names: Rect,
+    lanes: Lanes,
+    entries: &'a [LegendEntry],
+) -> Option<Vec<(Rect, Vec<&'a LegendEntry>)>> {
+    if !entries.iter().all(|entry| entry.is_drawn) {
+        return None;
+    }
+    let parts = lanes.kinds().map(|kind| {
+        let is_in = |entry: &&LegendEntry| ValueKind::of(entry.channel) == kind;
+        let entries: Vec<_> = entries.iter().filter(is_in).collect();
+        let joints = entries.iter().map(|entry| session.document().joint_of(entry.channel));
+        let headings = joints.flatten().collect::<BTreeSet<_>>();
+        let lane = lanes.lane(kind, names);
+        let rows = entries.len() + headings.len();
+        (ROW * rows as f32 <= lane.height()).then_some((lane, entries))
     });
+    parts.collect()
+}
+
+/// Lists channels, with a heading for each joint but the one of the channel above.
+fn list(
+    ui: &mut Ui,
+    session: &Session,
+    entries: &[&LegendEntry],
+    above: &mut Option<JointId>,
+    ruler: &Response,
+    actions: &mut Actions,
+) {
+    ui.spacing_mut().item_spacing.y = 0.0;
+    for entry in entries {
+        let joint = session.document().joint_of(entry.channel);
+        if joint != *above
+            && let Some(joint) = joint
+        {
+            joint_name(ui, session, joint, ruler, actions);
+        }
+        *above = joint;
+        channel_name(ui, session, entry, ruler, actions);
+    }
 }
 
 /// Shows the name of a joint. A click selects the joint, with Shift or Ctrl besides the others; a
@@ -68,7 +110,7 @@ fn joint_name(
     let name = rig.skeleton.joint(joint).map_or("–", |joint| &joint.name);
     let selected = session.selection().joints();
     let said = format!("Curves of joint {name}");
-    let (rect, response) = item(ui, ("timeline joint", joint), selected.contains(&joint), &said);
+    let (rect, response) = item(ui, ui.next_auto_id(), selected.contains(&joint), &said);
     rows::line(ui, rect, name, ui.visuals().strong_text_color());
     if response.clicked() {
         ruler.request_focus();
@@ -104,7 +146,8 @@ fn channel_name(
             let font = TextStyle::Body.resolve(ui.style());
             ui.painter().text(pos2(x, y), Align2::LEFT_CENTER, AXES[place], font, colour);
         } else {
-            ui.painter().hline(x..=x + swatch - 1.5, y, Stroke::new(3.0, colour));
+            let square = Rect::from_center_size(pos2(x + 0.5 * swatch, y), Vec2::splat(SQUARE));
+            ui.painter().rect_filled(square, 2.0, colour);
         }
     }
     let left = rect.left() + indent + swatch * colours.len() as f32 - 5.0;
@@ -117,7 +160,7 @@ fn channel_name(
     rows::line(ui, beside, &labels::channel_of_joint(*channel), colour);
     let metres = session.document().metres_per_unit();
     let (_, unit) = ValueKind::of(*channel).unit(metres);
-    let (font, weak) = (TextStyle::Small.resolve(ui.style()), ui.visuals().weak_text_color());
+    let (font, weak) = (TextStyle::Body.resolve(ui.style()), ui.visuals().weak_text_color());
     ui.painter().text(pos2(rect.right() - 4.0, y), Align2::RIGHT_CENTER, unit, font, weak);
     if response.clicked() {
         ruler.request_focus();

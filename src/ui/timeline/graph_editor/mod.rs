@@ -39,7 +39,7 @@ pub(in crate::ui) fn ui(
 ) {
     let listed = listed(session);
     if listed.is_empty() {
-        rows::hint(ui, areas, hint(session));
+        rows::hint(ui, areas.keys, hint(session));
         return;
     }
     let drawn = drawn(session, &listed);
@@ -55,8 +55,8 @@ pub(in crate::ui) fn ui(
         is_drawn: drawn.contains(channel),
     };
     let entries: Vec<LegendEntry> = listed.iter().map(entry).collect();
-    legend::ui(ui, session, areas, &entries, ruler, actions);
     let scales = scales(ui, areas, &drawn, &curves);
+    legend::ui(ui, session, (areas, scales.lanes()), &entries, ruler, actions);
     let metres = session.document().metres_per_unit();
     value_scale::axes(ui, scales, areas.keys, metres, &curves);
     plots(ui, scale, areas.keys, &curves, scales);
@@ -136,7 +136,7 @@ fn scales(
     }
     let stored = ValueScales::load(ui, drawn);
     let fitting = || {
-        ValueScales::fitting(Lanes::of(drawn), |kind| {
+        ValueScales::fitting(Lanes::of(drawn), areas.keys, |kind| {
             let curves = curves.iter().filter(move |curve| curve.kind == kind);
             curves.flat_map(|curve| &curve.line).map(|point| point[1])
         })

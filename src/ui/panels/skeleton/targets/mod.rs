@@ -4,7 +4,7 @@
 pub(in crate::ui) mod space;
 mod turn;
 
-use egui::{RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
+use egui::{Align, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 use crate::document::{Channel, SkeletonRig, Target, TargetMotion, TargetPath};
 use crate::kinematics::chain_ik::{Root, Status};
@@ -57,9 +57,15 @@ fn row(
     actions: &mut Actions,
 ) {
     let Some((end, end_name)) = end(session.rig(), target) else { return };
-    widgets::pair(ui, "", |ui| {
+    let [to_left, to_right] =
+        [Layout::right_to_left(Align::Center), Layout::left_to_right(Align::Center)];
+    let height = ui.spacing().interact_size.y;
+    ui.allocate_ui_with_layout(vec2(ui.available_width(), height), to_left, |ui| {
         what_is_missing(ui, report, session.rig().tolerance());
-        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        ui.with_layout(to_right, |ui| {
+            // In one line with the check boxes below.
+            ui.spacing_mut().item_spacing.x = 0.0;
+            ui.spacing_mut().button_padding.x = 3.0;
             if switch(ui, target.enabled, end_name) {
                 let enabled = !target.enabled;
                 actions.push(TargetEdit::SetTarget(Target { enabled, ..*target }));
