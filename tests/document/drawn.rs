@@ -235,7 +235,7 @@ fn lean(document: &mut Document) {
 }
 
 #[test]
-fn a_trail_has_a_ball_at_each_key_and_its_past_is_grey() {
+fn a_trail_has_a_ball_at_each_key_its_past_is_grey_and_what_is_far_is_fainter() {
     let document = documents::example("keyframes");
     let track = Track::new(&document);
     let (timeline, palette) = (document.timeline, Palette::new(Theme::Dark));
@@ -262,7 +262,18 @@ fn a_trail_has_a_ball_at_each_key_and_its_past_is_grey() {
         let (heads, tubes): (Vec<&Solid>, Vec<&Solid>) =
             short().partition(|it| it.shape.tip_radius == 0.0);
         assert_eq!(heads.len(), keys.len() - 1, "an arrowhead between two keys");
-        let grey = tubes.iter().filter(|it| it.colour != palette.accent).count();
-        assert_eq!(grey, past, "at {now} s");
+        let is_grey = |it: &&&Solid| {
+            let [r, g, b, _] = it.colour.0;
+            r.max(g).max(b) - r.min(g).min(b) < 24
+        };
+        assert_eq!(tubes.iter().filter(is_grey).count(), past, "at {now} s");
+        let view = scene.camera.projection(1.0);
+        let mut future: Vec<(f32, u8)> = tubes
+            .iter()
+            .filter(|it| !is_grey(it))
+            .map(|it| (view.forward.dot(it.transform.translation.into()), it.colour.0[2]))
+            .collect();
+        future.sort_by(|one, other| one.0.total_cmp(&other.0));
+        assert!(future.is_sorted_by(|near, far| near.1 >= far.1), "{future:?}");
     }
 }
