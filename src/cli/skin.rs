@@ -32,7 +32,7 @@ pub struct SkinArgs {
     /// Factor of all radii, above 0 [default: 1]
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = number)]
     thickness: Option<f32>,
-    /// Give each joint a body of its own, which moves with it alone, as an artist's mannequin has;
+    /// Give each joint a body of its own, as an artist's mannequin has;
     /// `--jointed=false` makes one surface of all [default: false]
     #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     jointed: Option<bool>,

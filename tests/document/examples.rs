@@ -1,11 +1,12 @@
 //! The examples with targets: each does what its sentence says, at every frame.
 
+use std::collections::BTreeMap;
+
 use glam::{DVec2, DVec3, Vec3};
 use ik_arm::document::{Channel, Document};
 use ik_arm::io::Example;
 use ik_arm::kinematics::limb_ik::Limb;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
-use ik_arm::kinematics::skin::Skinning;
 use ik_arm::rig::{EvaluatedSkeleton, TargetSpace};
 
 use crate::common::Random;
@@ -428,11 +429,34 @@ fn volume(positions: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
     crossings.iter_mut().map(inside).sum::<f64>() * cell.x * cell.y
 }
 
+/// The triangles of each connected piece of a mesh, in the order of their first vertices.
+fn bodies(triangles: &[[u32; 3]]) -> Vec<Vec<[u32; 3]>> {
+    let corners = || triangles.iter().flatten().map(|corner| *corner as usize);
+    let mut first: Vec<usize> = (0..=corners().max().expect("a triangle")).collect();
+    loop {
+        let before = first.clone();
+        for triangle in triangles.iter().map(|triangle| triangle.map(|corner| corner as usize)) {
+            let least = triangle.map(|corner| first[corner]).into_iter().min().expect("three");
+            triangle.into_iter().for_each(|corner| first[corner] = least);
+        }
+        if first == before {
+            break;
+        }
+    }
+    let mut bodies: BTreeMap<usize, Vec<[u32; 3]>> = BTreeMap::new();
+    for triangle in triangles {
+        bodies.entry(first[triangle[0] as usize]).or_default().push(*triangle);
+    }
+    bodies.into_values().collect()
+}
+
 #[test]
 fn the_humans_limbs_keep_their_volume_when_they_bend() {
     let human = opened("human");
-    let attached = human.rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
-    let mesh = &attached.mesh;
+    let skin = human.rig.skin.as_ref().expect("a skin");
+    let mesh = &skin.mesh().expect("a mesh").mesh;
+    let bodies = bodies(&mesh.mesh().triangles);
+    assert_eq!(bodies.len(), human.skeleton().joints().len(), "one for each joint, in their order");
     for (joint, axis, above) in [
         ("left_forearm", Vec3::NEG_X, "left_upper_arm"),
         ("right_shin", Vec3::X, "right_thigh"),
@@ -443,15 +467,12 @@ fn the_humans_limbs_keep_their_volume_when_they_bend() {
         skeleton.ids().for_each(|id| skeleton.set_rotation(id, Vec3::ZERO).expect("finite"));
         let find = |name: &str| human.skeleton().find(name).expect("a joint");
         let moved = |id: JointId| human.skeleton().ancestors(id).any(|it| it == find(joint));
-        let is_shown = |triangle: &&[u32; 3]| {
-            let id = mesh.weights()[triangle[0] as usize].first();
-            moved(id) || id == find(above)
-        };
-        let triangles: Vec<[u32; 3]> =
-            mesh.mesh().triangles.iter().filter(is_shown).copied().collect();
+        let is_shown = |id: JointId| moved(id) || id == find(above);
+        let shown = bodies.iter().zip(human.skeleton().ids()).filter(|(_, id)| is_shown(*id));
+        let triangles: Vec<[u32; 3]> = shown.flat_map(|(body, _)| body.clone()).collect();
         let mut at = |bend: f32| {
             skeleton.set_rotation(find(joint), axis * bend.to_radians()).expect("finite");
-            volume(&mesh.posed(&mesh.pose(&skeleton), Skinning::Linear).positions, &triangles)
+            volume(&mesh.posed(&mesh.pose(&skeleton), skin.skinning).positions, &triangles)
         };
         let straight = at(0.0);
         for bend in [90.0, 140.0] {

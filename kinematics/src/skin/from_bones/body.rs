@@ -18,9 +18,14 @@ pub struct SkinShape {
     pub thickness: f32,
     /// Bodies beside the bones.
     pub blobs: Vec<Blob>,
-    /// Each joint has a closed surface of its own, which moves with it alone, as the parts of an
-    /// artist's mannequin do. Where two surfaces meet, their normals turn to the mean of both, so that
-    /// the seam is hardly seen. Otherwise each tree of joints has one surface.
+    /// Each joint has a closed surface of its own, as the parts of an artist's mannequin are.
+    /// Otherwise each tree of joints has one surface.
+    ///
+    /// A surface moves with its joint alone, except near a seam where a joint is at the tip of its
+    /// parent and both surfaces are about as thick there (radii that differ by less than 1.4 times):
+    /// within 1.4 radii to either side of such a seam, weights pass evenly from one joint to the
+    /// other, so that an elbow or a knee has no crease. Elsewhere, surfaces keep their volume in any
+    /// bend. At all seams normals turn to the mean of both, so that a seam is hardly seen.
     pub is_jointed: bool,
     /// Euler angles in radians of the joints in the pose in which the surface is made; 0 for joints
     /// that are not in the list, as in the bind pose.
@@ -299,7 +304,8 @@ fn nearest_on_segment(base: DVec3, tip: DVec3, point: DVec3) -> DVec3 {
     if fraction.is_finite() { base + axis * fraction.clamp(0.0, 1.0) } else { base }
 }
 
-fn is_at_tip(skeleton: &Skeleton, child: JointId) -> bool {
+/// Whether the base of a joint is at the tip of its parent.
+pub fn is_at_tip(skeleton: &Skeleton, child: JointId) -> bool {
     let joint = &skeleton[child];
     let Some(parent) = joint.parent.map(|parent| &skeleton[parent]) else { return false };
     joint.offset.distance(parent.axis) <= 1e-4 * parent.axis.length()

@@ -29,6 +29,7 @@ use body::Body;
 use field::Field;
 use grid::Grid;
 use pose::PosedBones;
+use seams::Seam;
 use surface_nets::SurfaceNet;
 use sweep::Sweep;
 use weights::Weights;
@@ -59,7 +60,7 @@ impl SkinnedMesh {
         let mut surfaces =
             grid::map_in_order(&bodies, |(body, cell)| Surface::new(body, *cell, skeleton));
         if shape.is_jointed {
-            soften_seams(&mut surfaces, &bodies, skeleton);
+            join_seams(&mut surfaces, &bodies, skeleton);
         }
         let mut mesh = TriangleMesh::default();
         let mut weights = Vec::new();
@@ -114,13 +115,16 @@ fn cell_sizes(bodies: &[Body], shape: &SkinShape) -> Result<Vec<f64>, SkinShapeE
     Ok(cells)
 }
 
-/// Turns the normals near the seams of a jointed skin.
-fn soften_seams(surfaces: &mut [Surface], bodies: &[(Body, f64)], skeleton: &Skeleton) {
+/// Turns the normals near the seams of a jointed skin, and makes limbs bend evenly there.
+fn join_seams(surfaces: &mut [Surface], bodies: &[(Body, f64)], skeleton: &Skeleton) {
     let bodies: Vec<&Body> = bodies.iter().map(|(body, _)| body).collect();
-    let turns = seams::turns(&bodies, |body| &surfaces[body].vertices, skeleton);
-    for (surface, turns) in surfaces.iter_mut().zip(turns) {
-        for (vertex, turn) in turns {
-            surface.normals[vertex] += turn;
+    let seams = Seam::all(&bodies, skeleton);
+    for (body, vertex, turn) in seams::turns(&seams, &bodies, |body| &surfaces[body].vertices) {
+        surfaces[body].normals[vertex] += turn;
+    }
+    for (index, (surface, body)) in surfaces.iter_mut().zip(&bodies).enumerate() {
+        if let Some(joint) = body.sole_joint() {
+            surface.weights = seams::weights(index, joint, &surface.vertices, &seams);
         }
     }
 }

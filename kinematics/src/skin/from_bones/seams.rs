@@ -1,38 +1,145 @@
-//! Normals near the seams of a jointed skin.
+//! The seams of a jointed skin, where the body of a joint meets that of the joint above it.
+
+use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::body::Body;
+use super::body::{Body, is_at_tip};
 use super::field::{Field, FieldScratch};
 use super::grid;
 use super::sweep::Sweep;
 use crate::skeleton::{JointId, Skeleton};
+use crate::skin::VertexWeights;
+
+/// A seam between the bodies of two joints.
+#[derive(Clone, Copy, Debug)]
+pub struct Seam {
+    /// Indices of the bodies: of the joint above, and of the joint itself.
+    pub bodies: [usize; 2],
+    /// The joints of these bodies.
+    joints: [JointId; 2],
+    bend: Option<Bend>,
+}
+
+/// The part of a limb that bends evenly: two bodies of about one radius, one at the tip of the other.
+#[derive(Clone, Copy, Debug)]
+struct Bend {
+    /// Where the two bones meet.
+    centre: DVec3,
+    /// Unit vector between the directions of the two bones.
+    along: DVec3,
+    /// The smaller radius of the two bodies.
+    radius: f64,
+}
+
+impl Seam {
+    /// The seams between bodies that have one joint each.
+    pub fn all(bodies: &[&Body], skeleton: &Skeleton) -> Vec<Self> {
+        let joint_of = |body: &Body| body.sole_joint();
+        let body_of: HashMap<JointId, usize> = bodies
+            .iter()
+            .enumerate()
+            .filter_map(|(index, body)| Some((joint_of(body)?, index)))
+            .collect();
+        let seam = |(joint, body): (&JointId, &usize)| {
+            let mut above = skeleton.ancestors(*joint).skip(1);
+            let above = above.find(|above| body_of.contains_key(above))?;
+            let bodies_of = [body_of[&above], *body];
+            let bend = Bend::new(bodies_of.map(|body| bodies[body]), *joint, skeleton);
+            Some(Self { bodies: bodies_of, joints: [above, *joint], bend })
+        };
+        let mut seams: Vec<Self> = body_of.iter().filter_map(seam).collect();
+        seams.sort_by_key(|seam| seam.joints[1]);
+        seams
+    }
+
+    /// The other joint that a vertex of one of the two bodies follows, and its weight.
+    fn share(&self, body: usize, vertex: DVec3) -> Option<(JointId, f64)> {
+        let (bend, [above, below]) = (self.bend.as_ref()?, self.joints);
+        let [of_above, of_below] = bend.weights(vertex);
+        Some(if body == self.bodies[0] { (below, of_below) } else { (above, of_above) })
+    }
+}
+
+impl Bend {
+    /// Greatest ratio of the radii of two bodies that bend as one limb.
+    const MOST_STEP: f64 = 1.4;
+    /// Distance along the limb, in radii, in which the weights pass from one joint to the other, to
+    /// either side. The less, the sooner the inside of a bend folds; the more, the more its outside
+    /// bulges.
+    const HALF_LENGTH: f64 = 1.4;
+    /// Distances from the centre, in radii, between which the weights of the other joint end.
+    const END: [f64; 2] = [1.8, 2.6];
+
+    fn new([above, own]: [&Body; 2], joint: JointId, skeleton: &Skeleton) -> Option<Self> {
+        let parent = skeleton[joint].parent.filter(|_| is_at_tip(skeleton, joint))?;
+        (above.sole_joint() == Some(parent)).then_some(())?;
+        let pose = skeleton.bind_pose_in_skeleton();
+        let centre = pose.base(joint).as_dvec3();
+        let direction = |it| (pose.tip(it).as_dvec3() - pose.base(it).as_dvec3()).try_normalize();
+        let along = (direction(parent)? + direction(joint)?).try_normalize()?;
+        let depth = |body: &Body| -Field::new(body).distance(centre, &mut FieldScratch::default());
+        let [one, other] = [depth(above), depth(own)];
+        let (radius, most) = (one.min(other), one.max(other));
+        let is_one_limb = radius > 0.0 && most <= Self::MOST_STEP * radius;
+        is_one_limb.then_some(Self { centre, along, radius })
+    }
+
+    /// The weights of the other joint for a vertex of either body: of the joint above, and of the
+    /// joint below.
+    fn weights(&self, vertex: DVec3) -> [f64; 2] {
+        let out = (vertex - self.centre) / self.radius;
+        let [near, far] = Self::END;
+        let part = 1.0 - smooth_step((out.length() - near) / (far - near));
+        let below = smooth_step(0.5 + 0.5 * out.dot(self.along) / Self::HALF_LENGTH);
+        [part * (1.0 - below), part * below]
+    }
+}
+
+fn smooth_step(x: f64) -> f64 {
+    let x = x.clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}
+
+/// The weights of the vertices of a body with one joint: that joint's, but near seams of a limb also
+/// those of the joint beyond the seam, so that the limb bends there without a crease.
+pub fn weights(
+    body: usize,
+    joint: JointId,
+    vertices: &[DVec3],
+    seams: &[Seam],
+) -> Vec<VertexWeights> {
+    let own: Vec<&Seam> = seams.iter().filter(|seam| seam.bodies.contains(&body)).collect();
+    let at = |vertex: &DVec3| {
+        let shares = own.iter().filter_map(|seam| seam.share(body, *vertex));
+        let shares: Vec<(JointId, f64)> = shares.collect();
+        let kept = 1.0 - shares.iter().map(|(_, share)| share).sum::<f64>();
+        let all = shares.into_iter().chain([(joint, kept)]);
+        VertexWeights::heaviest(all.map(|(joint, weight)| (joint, weight as f32))).0
+    };
+    vertices.iter().map(at).collect()
+}
 
 /// Distance from a seam, as a fraction of the radius there, within which normals turn.
 const WIDTH: f64 = 0.6;
 
-/// What is added to the normals of each body, by the indices of its vertices, so that they turn where
-/// the surface of a joint meets that of the joint above it: at the seam to the mean of both normals, and
-/// farther away less and less. Both surfaces are lit alike there, so that the seam is hardly seen.
+/// What is added to the normals of bodies, as (body, vertex, normal), so that they turn where two of
+/// them meet: at the seam to the mean of both normals, and farther away less and less. Both surfaces
+/// are lit alike there, so that the seam is hardly seen.
 pub fn turns<'a>(
-    bodies: &[&'a Body],
+    seams: &[Seam],
+    bodies: &[&Body],
     vertices: impl Fn(usize) -> &'a [DVec3] + Sync,
-    skeleton: &Skeleton,
-) -> Vec<Vec<(usize, DVec3)>> {
-    let joints: Vec<Option<JointId>> = bodies.iter().map(|body| body.sole_joint()).collect();
-    let body_of = |joint| joints.iter().position(|it| *it == Some(joint));
-    let above = |joint: JointId| skeleton.ancestors(joint).skip(1).find_map(body_of);
-    let pairs = joints.iter().enumerate();
-    let pairs = pairs.filter_map(|(body, joint)| Some((body, above((*joint)?)?)));
-    let pairs: Vec<[usize; 2]> =
-        pairs.flat_map(|(body, above)| [[body, above], [above, body]]).collect();
-    let of_pairs =
-        grid::map_in_order(&pairs, |[of, other]| turns_near(vertices(*of), bodies[*other]));
-    let mut all = vec![Vec::new(); bodies.len()];
-    for ([of, _], turns) in pairs.iter().zip(of_pairs) {
-        all[*of].extend(turns);
-    }
-    all
+) -> Vec<(usize, usize, DVec3)> {
+    let pairs: Vec<[usize; 2]> = seams
+        .iter()
+        .flat_map(|Seam { bodies: [one, other], .. }| [[*other, *one], [*one, *other]])
+        .collect();
+    let of_pair = |[of, other]: &[usize; 2]| {
+        let turns = turns_near(vertices(*of), bodies[*other]).into_iter();
+        turns.map(|(vertex, turn)| (*of, vertex, turn)).collect::<Vec<_>>()
+    };
+    grid::map_in_order(&pairs, of_pair).concat()
 }
 
 /// The part of another body in the normals of a surface.
