@@ -1,7 +1,7 @@
 // Sphere of all directions of the Pointer, coloured by the twist reference's gain.
 
 const RIM_OPACITY = 0.3;
-const FAR_OPACITY = 0.8; // as a multiple of the near side's opacity
+const FAR_OPACITY = 0.4; // as a multiple of the near side's opacity
 const LINE_WIDTH = 1.3; // points
 const LINE_OPACITY = 0.5;
 const FAR_LINE = 0.4; // opacity of lines on the far side, as a multiple

@@ -193,7 +193,7 @@ impl Palette {
 }
 
 fn ramp(hex: [u32; Palette::GAINS]) -> [Colour; Palette::GAINS] {
-    const OPACITY: [f32; Palette::GAINS] = [0.04, 0.08, 0.2, 0.46, 0.8];
+    const OPACITY: [f32; Palette::GAINS] = [0.04, 0.08, 0.16, 0.34, 0.6];
     std::array::from_fn(|step| Colour::rgb(hex[step]).with_opacity(OPACITY[step]))
 }
 

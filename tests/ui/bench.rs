@@ -67,7 +67,7 @@ impl Bench {
     /// With the sections unfolded whose settings many tests use, and without the offer of the tour.
     pub fn liking(size: Vec2, preferences: Preferences) -> Self {
         let mut bench = Self::first(size, Preferences { offers_tour: false, ..preferences });
-        bench.toggle(&["Lengths", "Root"]);
+        bench.toggle(&["Limb", "Lengths", "Root", "Hierarchy"]);
         bench
     }
 

@@ -15,7 +15,7 @@ fn first_start() -> Bench {
 
 #[test]
 fn hand_twist_and_guides_are_open_and_all_else_is_folded() {
-    let bench = first_start();
+    let mut bench = first_start();
     for slider in ["Hand x", "Hand y", "Hand z", "Socket twist"] {
         assert!(bench.shows(Role::Slider, slider), "{slider}");
     }
@@ -31,7 +31,11 @@ fn hand_twist_and_guides_are_open_and_all_else_is_folded() {
     ] {
         assert!(!bench.shows(role, folded), "{folded}");
     }
-    for section in ["Root", "Lengths", "FK and IK", "Soft limits", "Hand orientation", "Display"] {
+    for section in ["Limb", "Skin", "Display"] {
+        assert!(bench.says(section), "{section}");
+    }
+    bench.toggle(&["Limb"]);
+    for section in ["Root", "Lengths", "FK and IK", "Soft limits", "Hand orientation"] {
         assert!(bench.says(section), "{section}");
     }
 }

@@ -405,7 +405,7 @@ fn the_two_poses_of_nearly_straight_are_shown_after_the_guess() {
 #[test]
 fn sections_that_the_tour_opened_close_again_when_it_ends() {
     let mut bench = Bench::first(LARGE, Preferences::default());
-    bench.toggle(&["Root"]);
+    bench.toggle(&["Limb", "Root"]);
     let shown = |bench: &Bench| {
         ["Softness", "Upper length", "Root x"].map(|slider| bench.shows(Role::Slider, slider))
     };

@@ -16,7 +16,7 @@ pub struct TourStep {
     scene: &'static str,
     /// Page of the panel on the right that the step shows.
     pub tab: Option<PanelTab>,
-    /// Section of the left panel that the step opens.
+    /// Section of the left panel that the step opens, after the section that it is in and `/`.
     pub section: Option<&'static str>,
     /// Name of the joint that is selected at first.
     pub(in crate::session) select: Option<&'static str>,
@@ -155,7 +155,7 @@ static STEPS: [TourStep; 13] = [
         title: "From hand to angles, and back",
         scene: include_str!("../../../assets/tour/elbow-circle.json"),
         tab: None,
-        section: Some("FK and IK"),
+        section: Some("Limb/FK and IK"),
         select: None,
         text: "An arm bends at its *joints*: at the shoulder by three angles, at the elbow by one. \
             These four *joint angles* make its *pose*. With *inverse kinematics* (IK) you give \
@@ -231,7 +231,7 @@ static STEPS: [TourStep; 13] = [
         title: "Where the hand can be",
         scene: include_str!("../../../assets/tour/limits.json"),
         tab: Some(PanelTab::Reach),
-        section: Some("Lengths"),
+        section: Some("Limb/Lengths"),
         select: None,
         text: "No side of a triangle is longer than the other two together. So the hand is at most \
             as far from the shoulder as both limbs together ({farthest} mm, the large sphere), \
@@ -280,7 +280,7 @@ static STEPS: [TourStep; 13] = [
         title: "Nearly straight",
         scene: include_str!("../../../assets/tour/nearly-straight.json"),
         tab: Some(PanelTab::Reach),
-        section: Some("Soft limits"),
+        section: Some("Limb/Soft limits"),
         select: None,
         text: "The limbs are {upper} mm and {lower} mm long, together {sum} mm. The Cursor is \
             {cursor_at_start} mm away: the arm is nearly straight.",
@@ -336,7 +336,7 @@ static STEPS: [TourStep; 13] = [
         title: "The shoulder moves",
         scene: include_str!("../../../assets/tour/elbow-circle.json"),
         tab: None,
-        section: Some("Root"),
+        section: Some("Limb/Root"),
         select: None,
         text: "A hand leans on a table while the body moves. If the hand *slides* over the table, \
             everyone sees that something is wrong. Here the Cursor belongs to the shoulder and \
@@ -361,7 +361,7 @@ static STEPS: [TourStep; 13] = [
         title: "Between two keys",
         scene: include_str!("../../../assets/tour/two-keys.json"),
         tab: None,
-        section: Some("FK and IK"),
+        section: Some("Limb/FK and IK"),
         select: None,
         text: "A *key* stores a pose at a time. Here are two, and the program fills in the poses \
             between. With FK it goes evenly from angles to angles, with IK from place to place of \

@@ -109,10 +109,14 @@ pub(in crate::ui) fn hand_section(ui: &mut Ui, limb: LimbTarget<'_>, actions: &m
 
 /// Shows all other settings of the only limb of a figure, folded at first.
 pub(in crate::ui) fn more(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
-    widgets::folded_section(ui, "Root", |ui| root(ui, limb, actions));
-    widgets::folded_section(ui, "Lengths", |ui| lengths(ui, limb, actions));
-    widgets::folded_section(ui, "FK and IK", |ui| fk_ik(ui, limb, actions));
-    bounds_and_hand(ui, limb, actions);
+    widgets::folded_section(ui, "Limb", |ui| {
+        ui.indent("limb", |ui| {
+            widgets::folded_section(ui, "Root", |ui| root(ui, limb, actions));
+            widgets::folded_section(ui, "Lengths", |ui| lengths(ui, limb, actions));
+            widgets::folded_section(ui, "FK and IK", |ui| fk_ik(ui, limb, actions));
+            bounds_and_hand(ui, limb, actions);
+        });
+    });
 }
 
 /// Shows the settings that a limb has besides those of every target.

@@ -10,9 +10,10 @@ use egui::{
 use crate::session::Actions;
 use crate::ui::glossary;
 
-/// Unfolds the section that is identified by `id` in the next frame, and scrolls to it.
-pub(in crate::ui) fn open_section(ui: &Ui, id: Option<&str>) {
-    ui.data_mut(|data| data.insert_temp(section_to_open(), id.map(ToOwned::to_owned)));
+/// Unfolds a section in the next frame, and scrolls to it. `path` is its id, after those of the sections
+/// that it is in, divided by `/`.
+pub(in crate::ui) fn open_section(ui: &Ui, path: Option<&str>) {
+    ui.data_mut(|data| data.insert_temp(section_to_open(), path.map(ToOwned::to_owned)));
 }
 
 /// Folds the sections that [`open_section`] has unfolded since the last call.
@@ -124,7 +125,10 @@ fn show_section(
     contents: impl FnOnce(&mut Ui),
 ) -> Rect {
     let heading = cut(ui, title);
-    let is_asked = ui.data(|data| data.get_temp(section_to_open())) == Some(Some(id.to_owned()));
+    let path: Option<String> = ui.data(|data| data.get_temp(section_to_open())).flatten();
+    let mut ids = path.iter().flat_map(|path| path.split('/'));
+    let is_asked = ids.clone().any(|it| it == id);
+    let is_innermost = ids.next_back() == Some(id);
     let section = CollapsingHeader::new(heading).id_salt(id).default_open(open);
     let shown = section.open(is_asked.then_some(true)).show_unindented(ui, contents);
     let header = &shown.header_response;
@@ -138,7 +142,7 @@ fn show_section(
             data.get_temp_mut_or_default::<Vec<Id>>(opened_sections()).push(header.id);
         });
     }
-    if is_asked {
+    if is_innermost {
         let end = shown.body_returned.map_or(header.rect, |()| ui.min_rect());
         ui.scroll_to_rect(header.rect.union(end), None);
     }

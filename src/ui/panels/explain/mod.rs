@@ -34,18 +34,7 @@ pub(in crate::ui) fn triangle(
     let lit = &mut Lit::new(session);
     triangle::ui(ui, limb, lit);
     sentence(ui, session, limb);
-    // A first start shows the triangle alone.
-    let is_open = !session.preferences().offers_tour;
-    widgets::named_section_with(
-        ui,
-        "Hierarchy",
-        "Hierarchy",
-        is_open,
-        |_| (),
-        |ui| {
-            hierarchy(ui, session, limb, lit, actions);
-        },
-    );
+    widgets::folded_section(ui, "Hierarchy", |ui| hierarchy(ui, session, limb, lit, actions));
     widgets::folded_section(ui, "Pointer", |ui| pointer::ui(ui, limb, lit));
     let title = format!("{} triangle", capital(limb.words.middle));
     widgets::named_folded_section(ui, "triangle", &title, |ui| triangle::quantities(ui, limb, lit));

@@ -193,10 +193,12 @@ impl TriangleDrawing {
         labels.write(&at_base, self.accent, LimbFigure::ShoulderAngle, &in_angle);
         let (start, turn) = self.at_elbow();
         let at_elbow = around(elbow, ARC, start + 0.5 * turn);
-        let above = [(-1.0, -14.0), (1.0, -14.0), (-1.0, -24.0), (1.0, -24.0)];
-        let above = above
-            .map(|(side, up)| Place { at: elbow + vec2(side * 12.0, up), away: vec2(side, 0.0) });
-        let at_elbow = [at_elbow, above.to_vec()].concat();
+        let beside_it =
+            [(12.0, -14.0), (12.0, -24.0), (24.0, -4.0), (24.0, 6.0)].map(|(out, up)| {
+                [-1.0, 1.0]
+                    .map(|side| Place { at: elbow + vec2(side * out, up), away: vec2(side, 0.0) })
+            });
+        let at_elbow = [at_elbow, beside_it.concat()].concat();
         let at_middle = format!("{} φ", capital(self.words.middle));
         labels.write(&at_middle, self.accent, LimbFigure::ElbowAngle, &at_elbow);
         let heights = [beside(elbow, foot), beside(foot, elbow)].concat();
