@@ -1,7 +1,7 @@
 // Sphere of all directions of the Pointer, coloured by the twist reference's gain.
 
 const RIM_OPACITY = 0.3;
-const FAR_OPACITY = 0.4; // as a multiple of the near side's opacity
+const NEAR_OPACITY = 0.45; // as a multiple of the far side's: what is inside is seen
 const LINE_WIDTH = 1.3; // points
 const LINE_OPACITY = 0.5;
 const FAR_LINE = 0.4; // opacity of lines on the far side, as a multiple
@@ -63,8 +63,7 @@ fn fragment(s: Side) -> Laid {
     let far = s.direction > 0.0;
     let line = isolines(level) * LINE_OPACITY * select(1.0, FAR_LINE, far);
 
-    let behind_near = far && met.hides_far > 0.5;
-    let share = met.cover * select(1.0, FAR_OPACITY, behind_near);
+    let share = met.cover * select(NEAR_OPACITY, 1.0, far);
     let opacity = (fill.a + RIM_OPACITY * rim(met.grazing)) * share;
     let colour = mix(fill.rgb, globe.line.rgb, line);
     return Laid(vec4f(colour, mix(opacity, share, line)), depth_of(met.point));

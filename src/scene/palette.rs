@@ -24,7 +24,7 @@ pub struct Palette {
     pub sky_top: Colour,
     /// Background at the bottom of the picture.
     pub sky_bottom: Colour,
-    /// Floor, with its opacity: what is below it shines through.
+    /// Floor. Its opacity is that of [`Planes::ground_opacity`](super::Planes::ground_opacity).
     pub ground: Colour,
     /// Lines of the grid in the floor, with opacity.
     pub grid: Colour,
@@ -105,11 +105,11 @@ impl Palette {
     /// See-through colour of an onion skin: the fainter, the farther it is from the playhead.
     pub(super) fn onion_skin(&self, skin: &OnionSkin) -> Colour {
         const OPACITY: f32 = 0.3;
-        // Part of the sky in the grey of the past.
+        // Parts of the sky in the grey of the past, and in the accent of the future, which would draw more
+        // attention than the figure.
         const FADED: f32 = 0.3;
-        let past = self.guide.mixed(self.sky_bottom, FADED);
-        let plain = if skin.past { past } else { self.accent };
-        plain.with_opacity(OPACITY * skin.opacity)
+        let plain = if skin.past { self.guide } else { self.accent };
+        plain.mixed(self.sky_bottom, FADED).with_opacity(OPACITY * skin.opacity)
     }
 
     /// Colour of a motion trail.
@@ -193,7 +193,7 @@ impl Palette {
 }
 
 fn ramp(hex: [u32; Palette::GAINS]) -> [Colour; Palette::GAINS] {
-    const OPACITY: [f32; Palette::GAINS] = [0.04, 0.08, 0.16, 0.34, 0.6];
+    const OPACITY: [f32; Palette::GAINS] = [0.13, 0.17, 0.23, 0.34, 0.48];
     std::array::from_fn(|step| Colour::rgb(hex[step]).with_opacity(OPACITY[step]))
 }
 

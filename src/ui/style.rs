@@ -70,6 +70,8 @@ pub fn install(ctx: &Context) {
             spacing.scroll.floating_allocated_width = 6.0;
             // Seen also while the mouse is elsewhere, but faintly: panels show that they scroll.
             spacing.scroll.dormant_handle_opacity = 0.2;
+            spacing.scroll.active_handle_opacity = 0.35;
+            spacing.scroll.floating_width = 5.0;
             // Faded rows look disabled.
             spacing.scroll.fade.strength = 0.0;
             spacing.window_margin = egui::Margin::same(12);

@@ -15,6 +15,8 @@ use crate::common::documents::example;
 
 const HANDS: [&str; 2] = ["left_forearm", "right_forearm"];
 const FEET: [&str; 2] = ["left_shin", "right_shin"];
+/// Index of the left hand among the targets of the Human.
+const LEFT_HAND: usize = 1;
 const BALANCING: [Method; 3] = [Method::DampedLeastSquares, Method::Transpose, Method::Ccd];
 
 fn joint(document: &Document, name: &str) -> JointId {
@@ -185,14 +187,14 @@ fn why_not_names_the_balance_and_switches_it_off_where_that_reaches_the_target()
     set_target(&mut document, HANDS[0], Vec3::new(0.75, 1.7, 0.2));
     let rig = &document.rig;
     let evaluated = rig.evaluate(0.0);
-    assert!(evaluated.targets[0].error > rig.tolerance(), "the balance is in the way");
+    assert!(evaluated.targets[LEFT_HAND].error > rig.tolerance(), "the balance is in the way");
     let found = rig.diagnose(0.0, &Carried::default());
     let balance = found.iter().find(|it| it.cause == Cause::Balance).expect("the balance");
     let tried = balance.remedies.first().expect("a remedy");
     assert_eq!(tried.remedy, Remedy::FreeBalance);
     let mut freed = rig.clone();
     freed.apply_remedy(&tried.remedy, 0.0).expect("applied");
-    assert!(freed.evaluate(0.0).targets[0].error <= rig.tolerance());
+    assert!(freed.evaluate(0.0).targets[LEFT_HAND].error <= rig.tolerance());
 
     document.rig.balance = None;
     set_target(&mut document, HANDS[0], Vec3::new(2.0, 1.7, 0.2));

@@ -12,6 +12,8 @@ use crate::common::Random;
 use crate::common::documents::example;
 
 const FEET: [&str; 2] = ["left_shin", "right_shin"];
+/// Index of the left hand among the targets of the Human.
+const LEFT_HAND: usize = 1;
 
 fn joint(document: &Document, name: &str) -> JointId {
     document.skeleton().find(name).expect("a joint")
@@ -83,7 +85,11 @@ fn a_hand_beyond_its_reach_takes_the_body_along_smoothly_and_the_feet_stay() {
             let track = Track::new(&document);
             let case = format!("{method}, {}", to - shoulder);
             let far = track.at(2.0);
-            assert!(far.targets()[0].error < 1e-4, "{case}: {}", far.targets()[0].error);
+            assert!(
+                far.targets()[LEFT_HAND].error < 1e-4,
+                "{case}: {}",
+                far.targets()[LEFT_HAND].error
+            );
             for part in ["pelvis", "chest"] {
                 let way = moved(&document, &track, [0.0, 2.0], &[part]);
                 assert!(way > 0.05, "{case}: {part} moved by {way}");
@@ -111,22 +117,26 @@ fn a_hand_that_its_limits_stop_takes_the_body_along_without_a_jump_and_the_feet_
             let mut alone = document.clone();
             alone.rig.body_follows = false;
             let at_far = Track::new(&alone).at(2.0);
-            let TargetOutcome::Limb(limb) = &at_far.targets()[0].outcome else { panic!("a limb") };
+            let TargetOutcome::Limb(limb) = &at_far.targets()[LEFT_HAND].outcome else {
+                panic!("a limb")
+            };
             // Places near enough to turn to.
             let is_stopped = matches!(limb.reach, LimbReach::Limited(_));
-            if !is_stopped || at_far.targets()[0].error > 0.15 {
+            if !is_stopped || at_far.targets()[LEFT_HAND].error > 0.15 {
                 continue;
             }
             of_method += 1;
             let track = Track::new(&document);
             let case = format!("{method}, {}", to - shoulder);
-            let error = track.at(2.0).targets()[0].error;
-            assert!(error < 1e-3, "{case}: {error}, alone {}", at_far.targets()[0].error);
+            let error = track.at(2.0).targets()[LEFT_HAND].error;
+            assert!(error < 1e-3, "{case}: {error}, alone {}", at_far.targets()[LEFT_HAND].error);
             assert_feet_stay(&track, 1e-4, &case);
             // The elbow may have to change sides at a limit; the body must not jump then.
             let most = if method == Method::Transpose { 15.0 } else { 4.0 };
-            let step =
-                at_far.targets()[0].position.distance(track.at(0.0).targets()[0].position) / 60.0;
+            let step = at_far.targets()[LEFT_HAND]
+                .position
+                .distance(track.at(0.0).targets()[LEFT_HAND].position)
+                / 60.0;
             for frame in 1..=120 {
                 let times = [frame - 1, frame].map(|frame| f64::from(frame) / 30.0);
                 let way = moved(&document, &track, times, &["pelvis", "spine", "chest", "head"]);
@@ -158,7 +168,7 @@ fn a_body_that_does_not_follow_lets_the_hand_miss() {
     let mut document = reaching(Method::DampedLeastSquares, shoulder() + Vec3::Z * (ARM + 0.2));
     document.rig.body_follows = false;
     let track = Track::new(&document);
-    assert!((track.at(2.0).targets()[0].error - 0.2).abs() < 1e-3);
+    assert!((track.at(2.0).targets()[LEFT_HAND].error - 0.2).abs() < 1e-3);
     assert!(moved(&document, &track, [0.0, 2.0], &["pelvis", "chest"]) < 1e-6);
 }
 
@@ -204,7 +214,7 @@ fn a_method_that_cannot_aim_refuses_that_target_and_solves_the_others() {
     };
     let (with, without) = (solved(true), solved(false));
     assert_eq!(with.skeleton(), without.skeleton(), "the hand takes the body along as without");
-    assert!(with.targets()[0].error < 1e-4);
+    assert!(with.targets()[LEFT_HAND].error < 1e-4);
     let outcome = &with.targets().last().expect("the head's target").outcome;
     let TargetOutcome::Refused(error) = outcome else { panic!("refused, not {outcome:?}") };
     assert!(

@@ -147,7 +147,7 @@ fn the_page_about_a_limb_colours_its_bones_alone() {
 fn an_onion_skin_of_a_figure_is_its_skin_or_else_its_bones_with_hips() {
     let mut session = Session::default();
     session.apply(open_example("walk"));
-    session.apply(PlaybackAction::SetTime(0.5));
+    session.apply(PlaybackAction::SetTime(1.0));
     for has_skin in [true, false] {
         let mut document = session.shown().clone();
         document.display =
@@ -158,15 +158,14 @@ fn an_onion_skin_of_a_figure_is_its_skin_or_else_its_bones_with_hips() {
             file: None,
             contents: None,
         });
-        shown.apply(PlaybackAction::SetTime(0.5));
+        shown.apply(PlaybackAction::SetTime(1.0));
         let overlays = shown.overlays();
         let [.., skin] = &overlays.onion_skins[..] else { panic!("onion skins") };
         let scene = Scene::new(shown.posed(), &overlays, Theme::Dark);
         assert_eq!(skin.skin.is_some(), has_skin);
-        // At 24 frames a second the motion starts 12 frames before.
         let names = scene.labels.iter().map(|label| scene.text(label));
         let names: Vec<&str> = names.filter(|name| name.ends_with(" frames")).collect();
-        assert_eq!(names, ["−12 frames", "+12 frames", "+24 frames"]);
+        assert_eq!(names, ["−18 frames", "+18 frames"]);
         if has_skin {
             let [own, onion_skins @ ..] = &scene.skins[..] else { panic!("no skins") };
             assert_eq!(onion_skins.len(), overlays.onion_skins.len());

@@ -110,7 +110,7 @@ fn the_human_stands_at_its_targets_by_its_own_angles() {
     for joint in fk.ids() {
         assert!(fk.tip(joint).distance(solved.tip(joint)) < 1e-5, "{}", fk[joint].name);
     }
-    let ends = ["left_hand", "right_hand", "left_foot", "right_foot"];
+    let ends = ["right_hand", "left_hand", "left_foot", "right_foot"];
     let [limbs @ .., look] = &human.rig.targets[..] else { panic!("targets") };
     assert_eq!((limbs.len(), targets.len()), (ends.len(), ends.len() + 1));
     assert_eq!(fk[look.joint].name, "head");

@@ -13,6 +13,8 @@ use crate::common::Random;
 use crate::common::documents::{example, open_example};
 
 const HANDS: [&str; 2] = ["left_hand", "right_hand"];
+/// Index of the left hand among the targets of the Human.
+const LEFT_HAND: usize = 1;
 
 /// The Human with its left hand selected and reach regions shown.
 fn session() -> Session {
@@ -108,21 +110,25 @@ fn the_human_reaches_the_places_of_its_region_with_its_feet_planted_and_balanced
     for balance in [None, Some(BalanceTarget::default())] {
         let mut document = example("human");
         document.rig.balance = balance;
-        let region = ReachRegion::of(&document.rig, 0, 0.0).expect("a region");
+        let region = ReachRegion::of(&document.rig, LEFT_HAND, 0.0).expect("a region");
         let (mut inside, mut places) = (0, 0);
         for place in grid() {
             places += 1;
             let is_in = region.contains(place);
             let mut near = (0..30).map(|_| place + random.direction() * region.cell());
             let is_clear = near.all(|it| region.contains(it) == is_in);
-            document.rig.targets[0].home = place;
+            document.rig.targets[LEFT_HAND].home = place;
             let posed = document.at(0.0);
             let errors: Vec<f32> = posed.targets().iter().map(|target| target.error).collect();
             let feet = errors[2].max(errors[3]);
             assert!(feet < 1e-4, "{place}: the feet are off by {feet}");
             if is_clear && is_in {
                 inside += 1;
-                assert!(errors[0] < 1e-3, "{place}: the hand is off by {}", errors[0]);
+                assert!(
+                    errors[LEFT_HAND] < 1e-3,
+                    "{place}: the hand is off by {}",
+                    errors[LEFT_HAND]
+                );
                 let evaluated = posed.evaluated_skeleton();
                 assert!(document.rig.is_balanced(evaluated), "{place}: {:?}", evaluated.balance);
             }

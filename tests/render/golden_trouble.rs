@@ -94,7 +94,7 @@ fn picture(scene: &Scene, side: u32) -> RgbaImage {
 /// Expected colours of a pixel of the globe, if they are smooth there: the
 /// ramp's for the library's own gain where the far and the near side are met, laid over the sky.
 fn expected(scene: &Scene, at: (u32, u32), side: u32, sky: [f64; 3]) -> Option<[f64; 3]> {
-    const FAR_OPACITY: f64 = 0.8;
+    const NEAR_OPACITY: f64 = 0.45;
     let globe = scene.globe?;
     let (radius, centre) = (f64::from(globe.radius), globe.centre.as_dvec3());
     let ray = scene.camera.projection(1.0).ray(glam::Vec2::new(
@@ -108,8 +108,7 @@ fn expected(scene: &Scene, at: (u32, u32), side: u32, sky: [f64; 3]) -> Option<[
     // Towards the rim the globe is denser.
     (half > 0.65 * radius).then_some(())?;
     let near_is_seen = middle > half || scene.camera.orthographic;
-    let far_opacity = if near_is_seen { FAR_OPACITY } else { 1.0 };
-    let sides = [(middle + half, far_opacity), (middle - half, 1.0)];
+    let sides = [(middle + half, 1.0), (middle - half, NEAR_OPACITY)];
     let mut colour = sky;
     for (along, share) in sides.into_iter().take(1 + usize::from(near_is_seen)) {
         let gain = gain(globe.reference, (origin + direction * along) / radius);

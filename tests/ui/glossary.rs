@@ -35,7 +35,7 @@ fn a_term_of_the_arm_explains_itself_and_shows_its_step() {
         ("Gain", Some(PanelTab::Twist), "The degrees by which the elbow turns", 8),
     ] {
         let mut bench = Bench::first(LARGE, Preferences::default());
-        bench.toggle(&["Soft limits"]);
+        bench.toggle(&["Limb", "Soft limits"]);
         tab.into_iter().for_each(|tab| bench.show_tab(tab));
         show_me(&mut bench, label, meaning, step);
     }

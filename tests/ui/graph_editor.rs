@@ -345,7 +345,7 @@ fn a_lane_with_three_curves_is_higher_than_one_with_one() {
     arm.apply([Action::from(KeysEdit::Key(vec![channels::HAND, channels::TWIST]))]);
     let [degrees, millimetres] = ["Axis in degrees (deg)", "Axis in millimetres (mm)"]
         .map(|name| arm.rect(Role::Label, name).height());
-    assert!((3.0 * millimetres - 5.0 * degrees).abs() < 1.0, "{millimetres} and {degrees}");
+    assert!((4.0 * millimetres - 6.0 * degrees).abs() < 1.0, "{millimetres} and {degrees}");
 }
 
 #[test]

@@ -140,7 +140,8 @@ fn the_limits_of_the_selected_joint_are_drawn_and_red_where_they_block() {
     let of_hinge = of_hinge - before;
     assert!((10..of_cone).contains(&of_hinge), "{of_hinge} shapes of the elbow, {of_cone} before");
     assert_eq!(red, 0, "the elbow is bent");
-    let hand = bench.session().rig().targets[0];
+    let rig = bench.session().rig();
+    let hand = rig.targets[rig.target(forearm).expect("a target")];
     let far = hand.home + Vec3::new(2.0, 0.0, 0.0);
     bench.apply([SolverEdit::SetBodyFollows(false)]);
     bench.apply([TargetEdit::SetTarget(hand.with_home(far))]);

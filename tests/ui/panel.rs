@@ -7,7 +7,8 @@ use glam::Vec3;
 use ik_arm::document::{Camera, Document, Overlay, Theme, TwistReferenceKind};
 use ik_arm::kinematics::two_bone::Reach;
 use ik_arm::session::{
-    Dialog, DisplayEdit, Effect, FrameBudget, Navigation, PanelTab, ShellAction, ViewAction,
+    Dialog, DisplayEdit, Effect, FrameBudget, Navigation, PanelTab, Preferences, ShellAction,
+    ViewAction,
 };
 
 use crate::bench::{Bench, LARGE, SMALL};
@@ -86,7 +87,8 @@ fn every_control_of_the_left_panel_is_there_by_name() {
 
 #[test]
 fn the_whole_left_panel_is_in_sight_at_1280_by_800() {
-    let bench = Bench::new();
+    let mut bench = Bench::first(LARGE, Preferences::default());
+    bench.toggle(&["Limb"]);
     let last = bench.rect(Role::Button, "Reset all");
     assert!(
         last.bottom() < bench.viewport().bottom() && last.right() < bench.viewport().left(),
@@ -148,6 +150,7 @@ fn reset_pose_resets_the_arm_and_leaves_what_is_shown() {
         ViewAction::SetCamera(camera).into(),
     ];
     let mut bench = Bench::after(actions);
+    bench.toggle(&["Limb"]);
     bench.click(Role::Button, "Reset pose");
     assert_eq!(&bench.session().arm(), &Arm::default());
     assert!(bench.session().document().display.shows(Overlay::OuterLimit));
@@ -163,6 +166,7 @@ fn reset_all_resets_everything_but_the_preferences() {
         ShellAction::SetTheme(Theme::Light).into(),
     ];
     let mut bench = Bench::after(actions);
+    bench.toggle(&["Limb"]);
     bench.click(Role::Button, "Reset all");
     assert_eq!(bench.session().document(), &Document::default());
     assert_eq!(bench.session().preferences().theme, Theme::Light);

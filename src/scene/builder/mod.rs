@@ -17,6 +17,7 @@ use super::{Ball, Line, Palette, Planes, Scene};
 use crate::document::{Overlay, Posed, Theme};
 use crate::rig::LimbPart;
 use crate::session::{Overlays, ShownLimb, Trail};
+pub(crate) use skeleton::AIM_START;
 use skeleton::Scratch;
 
 /// Fills scenes from documents. The builder owns the buffers for intermediate results, so that

@@ -225,6 +225,8 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, children: &mut V
     }
 }
 
+/// Where the line to what a bone aims at starts, as a fraction of the bone: the base of a head is its neck.
+pub(crate) const AIM_START: f32 = 0.65;
 /// Distance of a name from the highest tip of an onion skin, as a fraction of the figure's reach.
 const ABOVE_HEAD: f32 = 0.07;
 
@@ -329,10 +331,9 @@ impl DrawnSkeleton<'_> {
         }
     }
 
-    /// Adds a line from the middle of a bone that aims to the point that it aims at: the base of a head
-    /// is its neck.
+    /// Adds a line from a bone that aims to the point that it aims at.
     fn add_aim(&self, scene: &mut Scene, joint: JointId, to: Vec3) {
-        let from = self.pose.base(joint).midpoint(self.pose.tip(joint));
+        let from = self.pose.base(joint).lerp(self.pose.tip(joint), AIM_START);
         let colour = scene.palette.accent;
         scene.lines.push(Line { from, to, colour, dashed: true });
     }

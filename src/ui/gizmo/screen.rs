@@ -9,6 +9,7 @@ use glam::Vec3;
 use crate::document::{Camera, Overlay, Projection, Ray};
 use crate::kinematics::chain_ik::Ellipsoid;
 use crate::rig::LimbPart;
+use crate::scene::AIM_START;
 use crate::session::{Constraint, Drag, Session};
 use crate::ui::style;
 
@@ -125,9 +126,9 @@ pub(in crate::ui) fn limb_of_page(
     }
 }
 
-/// Draws the lines from the joints of targets that aim to the points that they aim at, with the names
-/// of the joints there; the line of the selected joint in the accent colour, with its name below the
-/// handles.
+/// Writes the names of joints that aim beside the points that they aim at, below the handles of the
+/// selected one, and draws faint lines to these points. A joint that is selected or under the mouse has
+/// its line in the scene.
 pub(in crate::ui) fn aims(
     painter: &Painter,
     ui: &Ui,
@@ -137,18 +138,24 @@ pub(in crate::ui) fn aims(
     /// Distance of a name from its point.
     const GAP: f32 = 16.0;
     const BELOW_HANDLES: f32 = 40.0;
+    /// Radius of the ring at a point.
+    const RING: f32 = 11.0;
     let pose = &session.posed().evaluated_skeleton().solved;
     let selected = session.selection().active();
     for target in session.rig().targets.iter().filter(|target| target.is_posing()) {
         let Some(point) = target.aim_point_in_world(pose) else { continue };
-        // From the middle of a bone: the base of a head is its neck.
-        let middle = pose.base(target.joint).midpoint(pose.tip(target.joint));
-        let ends = [middle, point].map(|end| screen.place(end));
+        let eyes = pose.base(target.joint).lerp(pose.tip(target.joint), AIM_START);
+        let ends = [eyes, point].map(|end| screen.place(end));
         let [Some(from), Some(to)] = ends else { continue };
         let is_selected = selected == Some(target.joint);
+        if !is_selected && session.selection().hovered() != Some(target.joint) {
+            let accent = style::colour(style::palette(ui).accent).gamma_multiply(0.5);
+            let ends = [from, to + (from - to).normalized() * RING];
+            painter.extend(Shape::dashed_line(&ends, Stroke::new(1.0, accent), 5.0, 4.0));
+        }
         let has_name = session.shown().display.shows(Overlay::Labels);
         if let Some(joint) = session.rig().skeleton.joint(target.joint).filter(|_| has_name) {
-            let text = format!("{} aims here", joint.name);
+            let text = format!("{} aim", joint.name);
             let font = TextStyle::Body.resolve(ui.style());
             let text = painter.layout_no_wrap(text, font, ui.visuals().text_color());
             let half = 0.5 * text.size().y;

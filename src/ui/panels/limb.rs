@@ -110,6 +110,7 @@ pub(in crate::ui) fn hand_section(ui: &mut Ui, limb: LimbTarget<'_>, actions: &m
 /// Shows all other settings of the only limb of a figure, folded at first.
 pub(in crate::ui) fn more(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     widgets::folded_section(ui, "Limb", |ui| {
+        ui.visuals_mut().indent_has_left_vline = false;
         ui.indent("limb", |ui| {
             widgets::folded_section(ui, "Root", |ui| root(ui, limb, actions));
             widgets::folded_section(ui, "Lengths", |ui| lengths(ui, limb, actions));

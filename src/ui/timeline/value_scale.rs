@@ -98,10 +98,10 @@ impl Lanes {
         Rect::from_x_y_ranges(plot.x_range(), top..=top + height * self.weight(kind))
     }
 
-    /// Height of a lane, relative to the others: 5 from three curves on, 3 with one.
+    /// Height of a lane, relative to the others: 6 from three curves on, 4 with one.
     fn weight(self, kind: ValueKind) -> f32 {
         const MOST: usize = 3;
-        2.0 + self.0[kind.index()].min(MOST) as f32
+        3.0 + self.0[kind.index()].min(MOST) as f32
     }
 }
 
@@ -266,7 +266,7 @@ pub(super) struct ChannelCurve {
 }
 
 /// Minimum distance in points between labels.
-const BETWEEN: f32 = 16.0;
+const BETWEEN: f32 = 22.0;
 /// Least distance in points between a label and the upper and lower end of its lane.
 const FROM_END: f32 = 5.0;
 /// Distance in points between the plot and the labels.

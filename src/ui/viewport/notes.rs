@@ -128,7 +128,7 @@ pub(super) fn follow_mouse(ui: &Ui, session: &Session, viewport: Rect, actions: 
 /// Says what the colours of the singularity globe mean.
 pub(super) fn globe_colours(ui: &Ui, session: &Session, viewport: Rect) {
     /// Width in points.
-    const WIDTH: f32 = 184.0;
+    const WIDTH: f32 = 206.0;
     let is_shown = session.shown().display.shows(Overlay::SingularityGlobe);
     let Some(limb) = session.limb().filter(|_| is_shown && session.crowd().is_none()) else {
         return;

@@ -21,8 +21,9 @@ pub(in crate::ui) fn tabs<T: PartialEq + Copy>(
     tabs: &[Alternative<'_, T>],
 ) -> Option<T> {
     let mut pressed = None;
+    let gap = if ui.available_width() > ROOMY { 16.0 } else { 2.0 };
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(2.0, 0.0);
+        ui.spacing_mut().item_spacing = vec2(gap, 0.0);
         ui.spacing_mut().button_padding = vec2(PADDING, 5.0);
         for &(value, name, tooltip) in tabs {
             let is_now = value == now;
@@ -47,6 +48,8 @@ pub(in crate::ui) fn tabs<T: PartialEq + Copy>(
 
 /// Space beside the name of a tab, in points: six tabs have room in a row of the page.
 const PADDING: f32 = 3.0;
+/// Width of a place, in points, from which tabs stand farther apart.
+const ROOMY: f32 = 480.0;
 
 fn underline(ui: &Ui, tab: Rect) {
     let y = tab.bottom() - 1.0;

@@ -1,5 +1,5 @@
-//! The names in the graph editor: joints, and below each its channels with the colours of their
-//! curves; beside each lane those of its curves, where they have room there.
+//! The names in the graph editor: joints, unless there is one alone, and below each its channels with the
+//! colours of their curves; beside each lane those of its curves, where they have room there.
 
 use std::collections::BTreeSet;
 
@@ -40,13 +40,15 @@ pub(in crate::ui::timeline) fn ui(
     actions: &mut Actions,
 ) {
     let names = areas.names.with_max_x(areas.names.right() - VALUES);
+    let joints: BTreeSet<_> =
+        entries.iter().map(|it| session.document().joint_of(it.channel)).collect();
+    let has_headings = joints.len() > 1;
     let parts = beside_lanes(session, names, lanes, entries);
-    let mut above = None;
     for (rect, entries) in parts.unwrap_or_else(|| vec![(names, entries.iter().collect())]) {
         ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
             let top = rect.top().to_bits();
             ScrollArea::vertical().id_salt(("legend", top)).auto_shrink(false).show(ui, |ui| {
-                list(ui, session, &entries, &mut above, ruler, actions);
+                list(ui, session, &entries, has_headings, ruler, actions);
             });
         });
     }
@@ -75,24 +77,26 @@ fn beside_lanes<'a>(
     parts.collect()
 }
 
-/// Lists channels, with a heading for each joint but the one of the channel above.
+/// Lists channels, with a heading for each joint but the one of the channel above, if `has_headings`.
 fn list(
     ui: &mut Ui,
     session: &Session,
     entries: &[&LegendEntry],
-    above: &mut Option<JointId>,
+    has_headings: bool,
     ruler: &Response,
     actions: &mut Actions,
 ) {
     ui.spacing_mut().item_spacing.y = 0.0;
+    let mut above = None;
     for entry in entries {
         let joint = session.document().joint_of(entry.channel);
-        if joint != *above
+        if has_headings
+            && joint != above
             && let Some(joint) = joint
         {
             joint_name(ui, session, joint, ruler, actions);
         }
-        *above = joint;
+        above = joint;
         channel_name(ui, session, entry, ruler, actions);
     }
 }
