@@ -107,9 +107,8 @@ impl Palette {
         const OPACITY: f32 = 0.3;
         // Parts of the sky in the grey of the past, and in the accent of the future, which would draw more
         // attention than the figure.
-        const FADED: f32 = 0.3;
-        let plain = if skin.past { self.guide } else { self.accent };
-        plain.mixed(self.sky_bottom, FADED).with_opacity(OPACITY * skin.opacity)
+        let (plain, faded) = if skin.past { (self.guide, 0.3) } else { (self.accent, 0.45) };
+        plain.mixed(self.sky_bottom, faded).with_opacity(OPACITY * skin.opacity)
     }
 
     /// Colour of a motion trail.

@@ -15,8 +15,11 @@ use crate::bench::Bench;
 
 const LEFT: PointerButton = PointerButton::Primary;
 
+/// The Human from its left, as a document without a camera is seen.
 fn human() -> Bench {
     let mut bench = Bench::example("human");
+    let (camera, Camera { yaw, pitch, .. }) = (*bench.session().camera(), Camera::default());
+    bench.apply([ViewAction::SetCamera(Camera { yaw, pitch, ..camera })]);
     bench.apply([SolverEdit::SetBodyFollows(false)]);
     bench.apply([SelectAction::Joints(Vec::new())]);
     bench

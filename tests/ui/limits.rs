@@ -5,14 +5,15 @@ use core::f32::consts::PI;
 use egui::PointerButton;
 use egui::accesskit::Role;
 use glam::{Quat, Vec2, Vec3};
-use ik_arm::document::Overlay;
+use ik_arm::document::{Camera, Overlay};
 use ik_arm::kinematics::skeleton::{
     Cone, Extreme, Joint, JointLimits, Limit, LimitEnd, RotationAxis, SwingAxis,
 };
 use ik_arm::rig::TargetOutcome;
 use ik_arm::scene::{Colour, SceneBuilder};
 use ik_arm::session::{
-    DisplayEdit, Grip, JointEdit, LimitFan, SelectAction, SolverEdit, TargetEdit, TransactionAction,
+    DisplayEdit, Grip, JointEdit, LimitFan, SelectAction, SolverEdit, TargetEdit,
+    TransactionAction, ViewAction,
 };
 
 use crate::bench::Bench;
@@ -20,6 +21,8 @@ use crate::bench::Bench;
 /// The Human with its left upper arm selected.
 fn upper_arm() -> Bench {
     let mut bench = Bench::example("human");
+    let (camera, Camera { yaw, pitch, .. }) = (*bench.session().camera(), Camera::default());
+    bench.apply([ViewAction::SetCamera(Camera { yaw, pitch, ..camera })]);
     let joint = bench.joint("left_upper_arm");
     bench.apply([JointEdit::SetLimits { joint, limits: JointLimits::NONE }]);
     bench.apply([SelectAction::Joints(vec![joint])]);

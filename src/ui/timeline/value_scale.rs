@@ -266,9 +266,9 @@ pub(super) struct ChannelCurve {
 }
 
 /// Minimum distance in points between labels.
-const BETWEEN: f32 = 22.0;
+const BETWEEN: f32 = 18.0;
 /// Least distance in points between a label and the upper and lower end of its lane.
-const FROM_END: f32 = 5.0;
+const FROM_END: f32 = 6.0;
 /// Distance in points between the plot and the labels.
 const GAP: f32 = 5.0;
 

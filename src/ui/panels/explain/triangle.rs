@@ -131,12 +131,20 @@ impl TriangleDrawing {
         arc(self.elbow, ARC, start, turn)
     }
 
+    /// True if the elbow is so near the Pointer that its height and the circles through it would be a
+    /// knot of lines.
+    fn is_flat(&self) -> bool {
+        self.elbow.distance(self.foot) < 1.2 * ARC
+    }
+
     /// Paints lines and labels, and returns where the labels are.
     fn paint(&self, painter: &Painter, ui: &Ui) -> Vec<(Rect, LimbFigure)> {
         let thin = Stroke::new(1.0, self.weak);
-        painter.extend(Shape::dashed_line(&[self.elbow, self.foot], thin, 3.0, 3.0));
         painter.line_segment([self.shoulder, self.hand], Stroke::new(1.5, self.text));
-        self.paint_compass(painter);
+        if !self.is_flat() {
+            painter.extend(Shape::dashed_line(&[self.elbow, self.foot], thin, 3.0, 3.0));
+            self.paint_compass(painter);
+        }
         self.paint_angles(painter);
         painter.line_segment([self.shoulder, self.elbow], Stroke::new(4.0, self.upper));
         painter.line_segment([self.elbow, self.hand], Stroke::new(4.0, self.lower));
@@ -213,11 +221,13 @@ impl TriangleDrawing {
     /// The lines that labels keep clear of.
     fn lines(&self) -> Vec<[Pos2; 2]> {
         let Self { shoulder, elbow, hand, foot, .. } = *self;
-        let sides = [[shoulder, elbow], [elbow, hand], [shoulder, hand], [elbow, foot]];
-        let ends = self.compass().map(|points| [points[0], points[points.len() - 1]]);
-        let arc = self.elbow_arc();
-        let chords: Vec<_> = arc.windows(2).map(|ends| [ends[0], ends[1]]).collect();
-        [sides.as_slice(), &ends, &chords].concat()
+        let mut lines = vec![[shoulder, elbow], [elbow, hand], [shoulder, hand]];
+        if !self.is_flat() {
+            lines.push([elbow, foot]);
+            lines.extend(self.compass().map(|points| [points[0], points[points.len() - 1]]));
+        }
+        lines.extend(self.elbow_arc().windows(2).map(|ends| [ends[0], ends[1]]));
+        lines
     }
 }
 

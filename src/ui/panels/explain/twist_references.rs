@@ -30,14 +30,14 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, limb: &ShownLimb, action
 /// Shows the colour bar of the singularity globe, on a logarithmic scale of the gain. `middle` is
 /// the word for the middle joint of the limb.
 pub(in crate::ui) fn globe_legend(ui: &mut Ui, middle: &str) {
-    ui.label(format!("{} speed / Pointer speed", capital(middle)));
+    ui.label(format!("1° of Pointer turns the {middle} by"));
     let summary = "Gain: elbow degrees per degree of the Pointer, 0 to 8 and more";
     let (palette, end) = (style::palette(ui), Palette::MAX_GAIN.ln_1p());
     let colour = |place: f32| {
         let gain = (place * end).exp_m1();
         style::colour(palette.gain(gain).with_opacity(1.0))
     };
-    let gains = [(0.0, "0"), (1.0, "1"), (2.0, "2"), (5.0, "5"), (Palette::MAX_GAIN, "8+")];
+    let gains = [(0.0, "0°"), (1.0, "1°"), (2.0, "2°"), (5.0, "5°"), (Palette::MAX_GAIN, "8°+")];
     let marks = gains.map(|(gain, text)| (f32::ln_1p(gain) / end, text));
     widgets::colour_bar(ui, summary, colour, &marks);
     ui.weak(format!("Singular: the {middle} spins"));

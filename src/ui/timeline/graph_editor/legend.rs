@@ -1,4 +1,4 @@
-//! The names in the graph editor: joints, unless there is one alone, and below each its channels with the
+//! The names in the graph editor: joints, unless only one has keys, and below each its channels with the
 //! colours of their curves; beside each lane those of its curves, where they have room there.
 
 use std::collections::BTreeSet;
@@ -40,8 +40,9 @@ pub(in crate::ui::timeline) fn ui(
     actions: &mut Actions,
 ) {
     let names = areas.names.with_max_x(areas.names.right() - VALUES);
-    let joints: BTreeSet<_> =
-        entries.iter().map(|it| session.document().joint_of(it.channel)).collect();
+    let document = session.document();
+    let joints = document.keys.tracks().map(|(channel, _)| document.joint_of(channel));
+    let joints: BTreeSet<_> = joints.collect();
     let has_headings = joints.len() > 1;
     let parts = beside_lanes(session, names, lanes, entries);
     for (rect, entries) in parts.unwrap_or_else(|| vec![(names, entries.iter().collect())]) {
