@@ -108,7 +108,7 @@ come_closer() {
     case $1 in
         arm) part=0.62 to=(60 -20 10) ;;
         two-targets) part=0.6 ;;
-        table) part=1 ;;
+        table) part=0.9 ;;
         ten-joints | pulled-apart | out-of-reach) part=0.72 ;;
         inside-* | too-few-iterations) part=0.75 ;;
         locked) part=0.9 ;;
@@ -117,8 +117,8 @@ come_closer() {
         walk) part=0.68 to=(0 0 "$(awk "BEGIN { print 1.41 * ($3 - 1) }")") ;; # metres in a second
         human) part=0.88 ;;
         wheel) part=0.9 ;;
-        tadpoles) part=0.85 ;;
-        reaching-down) part=0.78 ;;
+        tadpoles) part=0.82 ;;
+        reaching-down) part=0.76 ;;
         looking-at-the-hand) part=0.88 ;;
     esac
     python3 - "$2" "$part" "${to[@]}" <<'END'

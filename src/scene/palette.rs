@@ -62,7 +62,7 @@ impl Palette {
                 grid: Colour::rgb(0x9aa4b4).with_opacity(0.75),
                 wall: Colour::rgb(0x9aa4b4),
                 text: Colour::rgb(0xeef0f4),
-                gains: ramp([0x5c86b5, 0xa164b4, 0xd8487c, 0xf76c43, 0xffa83f]),
+                gains: ramp([0x4f93e3, 0x9a6ad6, 0xd8487c, 0xf76c43, 0xffa83f]),
                 shadow: 0.7,
             },
             Theme::Light => Self {
@@ -107,7 +107,7 @@ impl Palette {
         const OPACITY: f32 = 0.3;
         // Parts of the sky in the grey of the past, and in the accent of the future, which would draw more
         // attention than the figure.
-        let (plain, faded) = if skin.past { (self.guide, 0.3) } else { (self.accent, 0.45) };
+        let (plain, faded) = if skin.past { (self.guide, 0.3) } else { (self.accent, 0.2) };
         plain.mixed(self.sky_bottom, faded).with_opacity(OPACITY * skin.opacity)
     }
 
@@ -192,7 +192,7 @@ impl Palette {
 }
 
 fn ramp(hex: [u32; Palette::GAINS]) -> [Colour; Palette::GAINS] {
-    const OPACITY: [f32; Palette::GAINS] = [0.13, 0.17, 0.23, 0.34, 0.48];
+    const OPACITY: [f32; Palette::GAINS] = [0.17, 0.2, 0.25, 0.36, 0.5];
     std::array::from_fn(|step| Colour::rgb(hex[step]).with_opacity(OPACITY[step]))
 }
 

@@ -71,6 +71,7 @@ pub fn install(ctx: &Context) {
             // Seen also while the mouse is elsewhere, but faintly: panels show that they scroll.
             spacing.scroll.dormant_handle_opacity = 0.2;
             spacing.scroll.active_handle_opacity = 0.35;
+            spacing.scroll.interact_handle_opacity = 0.5;
             spacing.scroll.floating_width = 5.0;
             // Faded rows look disabled.
             spacing.scroll.fade.strength = 0.0;

@@ -10,8 +10,8 @@ mod skeleton;
 use std::mem::discriminant;
 
 use egui::{
-    Align2, Color32, Frame, Grid, Id, Modal, Pos2, Rect, Role, Ui, UiBuilder, WidgetInfo, Window,
-    pos2, vec2,
+    Align2, Color32, Frame, Grid, Id, Modal, Pos2, Rect, Role, Shadow, Stroke, Ui, UiBuilder,
+    Visuals, WidgetInfo, Window, pos2, vec2,
 };
 
 use super::frame_times::Machine;
@@ -65,7 +65,7 @@ pub(in crate::ui) fn ui(
         dialog,
         Dialog::About | Dialog::Shortcuts | Dialog::Glossary | Dialog::Examples(_)
     );
-    let backdrop = backdrop(dialog, ui.visuals().dark_mode);
+    let backdrop = backdrop(dialog, ui.visuals());
     let closes = modal(ui, title, (has_close, backdrop), |ui| match dialog {
         Dialog::About => about(ui, machine),
         Dialog::Shortcuts => shortcuts::ui(ui, session),
@@ -123,12 +123,11 @@ fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
     now != before
 }
 
-/// What covers the window behind a modal one: a page of examples all of it, since words that the page
-/// cuts off would be read; a question lets what it is about be seen.
-fn backdrop(dialog: &Dialog, is_dark: bool) -> Color32 {
-    match (dialog, is_dark) {
-        (Dialog::Examples(_), true) => Color32::from_rgb(0x13, 0x15, 0x19),
-        (Dialog::Examples(_), false) => Color32::from_rgb(0xdd, 0xe2, 0xe8),
+/// What covers the window behind a modal one. Examples are a page of their own, since words that it cuts
+/// off would be read; a question lets what it is about be seen.
+fn backdrop(dialog: &Dialog, visuals: &Visuals) -> Color32 {
+    match (dialog, visuals.dark_mode) {
+        (Dialog::Examples(_), _) => visuals.window_fill,
         (_, true) => Color32::from_black_alpha(150),
         (_, false) => Color32::from_black_alpha(100),
     }
@@ -144,6 +143,9 @@ fn modal(
 ) -> bool {
     let style = ui.global_style();
     let frame = Frame::window(&style).inner_margin(16.0);
+    // A page has no edge.
+    let is_page = backdrop == style.visuals.window_fill;
+    let frame = if is_page { frame.shadow(Shadow::NONE).stroke(Stroke::NONE) } else { frame };
     let id = Id::unique(("dialog", title.to_owned()));
     let area = Modal::default_area(id).fade_in(false);
     let modal = Modal::new(id).area(area).frame(frame).backdrop_color(backdrop);

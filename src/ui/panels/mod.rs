@@ -44,9 +44,7 @@ fn properties(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
     guides(ui, session, limb.is_some(), actions);
     if let Some(limb) = limb {
-        widgets::divider(ui);
         limb::more(ui, limb, actions);
-        widgets::divider(ui);
         skeleton::skin_section(ui, session, actions);
         skeleton::selected(ui, session, actions);
     }

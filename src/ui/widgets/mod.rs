@@ -17,7 +17,7 @@ pub(in crate::ui) use choices::{
 pub(in crate::ui) use number::{DragNumber, NumberField, frame_rate};
 pub(in crate::ui) use plot::colour_bar;
 pub(in crate::ui) use section::{
-    at_right, divider, fold_opened_sections, folded_section, named_folded_section, named_section,
+    at_right, fold_opened_sections, folded_section, named_folded_section, named_section,
     named_section_with, open_section, pair, section, section_with, term_pair, value, whole_rows,
 };
 pub(in crate::ui) use slider::{

@@ -83,13 +83,6 @@ pub(in crate::ui) fn named_section_with(
     show_aside(ui, header.bottom());
 }
 
-/// Draws a line in the middle of the gap between two sections.
-pub(in crate::ui) fn divider(ui: &Ui) {
-    let y = ui.cursor().top() - 0.5 * ui.spacing().item_spacing.y;
-    let stroke = ui.visuals().widgets.noninteractive.bg_stroke;
-    ui.painter().hline(ui.max_rect().x_range(), y, stroke);
-}
-
 /// Shows a section that is folded at first.
 pub(in crate::ui) fn folded_section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
     show_section(ui, title, title, false, contents);
