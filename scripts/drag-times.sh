@@ -13,7 +13,7 @@ source scripts/window.sh
 # Positions in the newly opened window, in pixels.
 arm_hand="720 318"
 beside_the_arm="420 560"
-figure_hand="524 223"
+figure_hand="489 225"
 beside_the_figure="420 300"
 moves=250
 

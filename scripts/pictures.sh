@@ -118,8 +118,8 @@ come_closer() {
         human) part=0.88 ;;
         wheel) part=0.9 ;;
         tadpoles) part=0.82 ;;
-        reaching-down) part=0.76 ;;
-        looking-at-the-hand) part=0.88 ;;
+        reaching-down) part=0.8 ;;
+        looking-at-the-hand) part=1 ;;
     esac
     python3 - "$2" "$part" "${to[@]}" <<'END'
 import json, sys

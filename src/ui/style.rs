@@ -73,6 +73,7 @@ pub fn install(ctx: &Context) {
             spacing.scroll.active_handle_opacity = 0.35;
             spacing.scroll.interact_handle_opacity = 0.5;
             spacing.scroll.floating_width = 5.0;
+            spacing.scroll.bar_width = 6.0;
             // Faded rows look disabled.
             spacing.scroll.fade.strength = 0.0;
             spacing.window_margin = egui::Margin::same(12);

@@ -22,10 +22,10 @@ const TITLE: f32 = 24.0;
 const GAP: f32 = 12.0;
 /// Room for the bar of the area that scrolls.
 const BAR: f32 = 12.0;
-const MOST_COLUMNS: usize = 4;
-const MOST_ROWS: f32 = 3.0;
+const MOST_COLUMNS: usize = 6;
+const MOST_ROWS: f32 = 5.0;
 /// Height of the window without the pictures.
-const FRAME: f32 = 200.0;
+const FRAME: f32 = 160.0;
 /// Height of a line of the sentence about the example under the mouse, which takes two lines in a narrow
 /// dialog, and the space around it.
 const LINE: f32 = 20.0;
@@ -39,15 +39,21 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
     let columns = ((window.x - 80.0) / (PICTURE.x + GAP)).floor() as usize;
     let columns = columns.clamp(1, MOST_COLUMNS);
     let pictures_width = columns as f32 * (PICTURE.x + GAP) - GAP;
-    ui.set_width(pictures_width + BAR);
-    let groups = ExampleGroup::ALL.map(|it| (it, it.title(), "Show the examples of this group"));
-    let chosen = widgets::tabs(ui, group, &groups);
-    actions.extend(chosen.map(|it| ShellAction::OpenDialog(Dialog::Examples(it))));
-    ui.add_space(4.0);
     let examples: Vec<Example> = Example::of(group).collect();
     let row = PICTURE.y + TITLE + GAP;
-    let rows = ((window.y - FRAME) / row).floor().clamp(1.0, MOST_ROWS) as usize;
+    let most_rows = ((window.y - FRAME) / row).floor().clamp(1.0, MOST_ROWS) as usize;
+    // The page keeps its size while the groups change.
+    let groups = || ExampleGroup::ALL.into_iter();
+    let largest = groups().map(|it| Example::of(it).count()).max().unwrap_or_default();
+    let rows = largest.div_ceil(columns).min(most_rows);
     let height = row * rows as f32 - GAP;
+    let bar = if examples.len().div_ceil(columns) > rows { BAR } else { 0.0 };
+    ui.set_width(pictures_width + bar);
+    let tabs: Vec<_> =
+        groups().map(|it| (it, it.title(), "Show the examples of this group")).collect();
+    let chosen = widgets::tabs(ui, group, &tabs);
+    actions.extend(chosen.map(|it| ShellAction::OpenDialog(Dialog::Examples(it))));
+    ui.add_space(4.0);
     let mut pictures = Pictures::kept(ui);
     pictures.decode_some(ui, &examples);
     let mut pointed = None;
@@ -72,7 +78,7 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
     });
     pictures.keep(ui);
     ui.add_space(4.0);
-    let lines = if columns == MOST_COLUMNS { 1.0 } else { 2.0 };
+    let lines = if columns > 3 { 1.0 } else { 2.0 };
     let size = vec2(pictures_width, LINE * lines + 2.0 * AROUND.y);
     let sentence = ui.allocate_exact_size(size, Sense::hover()).0;
     say(ui, sentence, pointed);
