@@ -28,7 +28,6 @@ struct Met {
     point: vec3f,
     cover: f32, // fraction of the pixel that is covered; 0 behind the eye
     grazing: f32, // 0 if the ray is perpendicular to the surface, 1 at the rim
-    hides_far: f32, // 1 if the near side is in front of the eye, else 0
 }
 
 // Intersection of a ray with the near (`side` = -1) or the far side (`side` = 1) of a sphere.
@@ -38,8 +37,7 @@ fn meet(ray: Ray, centre: vec3f, radius: f32, side: f32) -> Met {
     let middle = -dot(from_centre, ray.direction) / squared;
     let miss = length(from_centre + ray.direction * middle);
     let half_chord = sqrt(max(radius * radius - miss * miss, 0.0));
-    let half_along = half_chord * inverseSqrt(squared);
-    let along = middle + half_along * side;
+    let along = middle + half_chord * inverseSqrt(squared) * side;
     let size = pixel_size(middle);
     let edge = saturate(0.5 + (radius - miss) / size) * saturate(radius / size);
     // The ratio of half the chord to the radius is the cosine of the angle between the normal and
@@ -48,7 +46,6 @@ fn meet(ray: Ray, centre: vec3f, radius: f32, side: f32) -> Met {
         ray.origin + ray.direction * along,
         edge * select(0.0, 1.0, along > nearest_along()),
         1.0 - half_chord / radius,
-        select(0.0, 1.0, middle - half_along > nearest_along()),
     );
 }
 

@@ -8,7 +8,7 @@ use super::body::{Body, is_at_tip};
 use super::field::{Field, FieldScratch};
 use super::grid;
 use super::sweep::Sweep;
-use crate::skeleton::{JointId, Skeleton};
+use crate::skeleton::{JointId, Skeleton, SkeletonPose};
 use crate::skin::VertexWeights;
 
 /// A seam between the bodies of two joints.
@@ -35,18 +35,18 @@ struct Bend {
 impl Seam {
     /// The seams between bodies that have one joint each.
     pub fn all(bodies: &[&Body], skeleton: &Skeleton) -> Vec<Self> {
-        let joint_of = |body: &Body| body.sole_joint();
-        let body_of: HashMap<JointId, usize> = bodies
-            .iter()
-            .enumerate()
-            .filter_map(|(index, body)| Some((joint_of(body)?, index)))
-            .collect();
+        let of_joint = |(index, body): (usize, &&Body)| Some((body.sole_joint()?, index));
+        let body_of: HashMap<JointId, usize> =
+            bodies.iter().enumerate().filter_map(of_joint).collect();
+        let pose = skeleton.bind_pose_in_skeleton();
         let seam = |(joint, body): (&JointId, &usize)| {
             let mut above = skeleton.ancestors(*joint).skip(1);
             let above = above.find(|above| body_of.contains_key(above))?;
             let bodies_of = [body_of[&above], *body];
-            let bend = Bend::new(bodies_of.map(|body| bodies[body]), *joint, skeleton);
-            Some(Self { bodies: bodies_of, joints: [above, *joint], bend })
+            let joints = [above, *joint];
+            let is_at_tip = skeleton[*joint].parent == Some(above) && is_at_tip(skeleton, *joint);
+            let bend = || Bend::new(bodies_of.map(|body| bodies[body]), joints, &pose);
+            Some(Self { bodies: bodies_of, joints, bend: is_at_tip.then(bend).flatten() })
         };
         let mut seams: Vec<Self> = body_of.iter().filter_map(seam).collect();
         seams.sort_by_key(|seam| seam.joints[1]);
@@ -71,15 +71,14 @@ impl Bend {
     /// Distances from the centre, in radii, between which the weights of the other joint end.
     const END: [f64; 2] = [1.8, 2.6];
 
-    fn new([above, own]: [&Body; 2], joint: JointId, skeleton: &Skeleton) -> Option<Self> {
-        let parent = skeleton[joint].parent.filter(|_| is_at_tip(skeleton, joint))?;
-        (above.sole_joint() == Some(parent)).then_some(())?;
-        let pose = skeleton.bind_pose_in_skeleton();
-        let centre = pose.base(joint).as_dvec3();
+    /// `None` if one of two joints, the lower of which is at the tip of the other, has a bone without
+    /// length or is much thicker there.
+    fn new(bodies: [&Body; 2], joints: [JointId; 2], pose: &SkeletonPose) -> Option<Self> {
+        let centre = pose.base(joints[1]).as_dvec3();
         let direction = |it| (pose.tip(it).as_dvec3() - pose.base(it).as_dvec3()).try_normalize();
-        let along = (direction(parent)? + direction(joint)?).try_normalize()?;
+        let along = (direction(joints[0])? + direction(joints[1])?).try_normalize()?;
         let depth = |body: &Body| -Field::new(body).distance(centre, &mut FieldScratch::default());
-        let [one, other] = [depth(above), depth(own)];
+        let [one, other] = bodies.map(depth);
         let (radius, most) = (one.min(other), one.max(other));
         let is_one_limb = radius > 0.0 && most <= Self::MOST_STEP * radius;
         is_one_limb.then_some(Self { centre, along, radius })

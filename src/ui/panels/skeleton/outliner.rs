@@ -23,7 +23,7 @@ const FOLDED_FROM: usize = 4;
 /// Number of joints up to which a figure is shown whole at first, and number of rows to which a
 /// larger one is folded, so that the properties below need not be scrolled; fewer in a low window.
 const MOST_ROWS: usize = 12;
-const FOLDED_ROWS: usize = 12;
+const FOLDED_ROWS: usize = 8;
 
 const NONE_SELECTED: &str = "Select a joint first";
 
@@ -33,8 +33,7 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
     let is_limb = session.rig().sole_limb().is_some();
     let state = ui.make_persistent_id(("outliner", is_limb));
     let mut state = CollapsingState::load_with_default_open(ui, state, !is_limb);
-    let [folded, first, most] =
-        [0.43, 0.5, 0.6].map(|part| whole_rows(part * ui.available_height()));
+    let [first, most] = [0.5, 0.6].map(|part| whole_rows(part * ui.available_height()));
     // The panel around it has a margin.
     let frame = Frame::side_top_panel(ui.style());
     let whole = AROUND + ROW * session.skeleton().joints().len() as f32;
@@ -48,7 +47,7 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
         }
         true => Panel::top(Id::unique(("outliner", rows)))
             .resizable(true)
-            .default_size((AROUND + ROW * rows as f32).min(folded))
+            .default_size((AROUND + ROW * rows as f32).min(first))
             .size_range(whole_rows(0.0)..=most)
             .frame(open),
         false => Panel::top("folded outliner")
