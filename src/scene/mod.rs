@@ -10,7 +10,6 @@ mod palette;
 mod scene;
 mod shapes;
 
-pub(crate) use builder::AIM_START;
 pub use builder::SceneBuilder;
 pub use hand::hand_mesh;
 pub use palette::{Colour, Palette};

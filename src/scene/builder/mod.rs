@@ -17,7 +17,6 @@ use super::{Ball, Line, Palette, Planes, Scene};
 use crate::document::{Overlay, Posed, Theme};
 use crate::rig::LimbPart;
 use crate::session::{Overlays, ShownLimb, Trail};
-pub(crate) use skeleton::AIM_START;
 use skeleton::Scratch;
 
 /// Fills scenes from documents. The builder owns the buffers for intermediate results, so that
@@ -35,6 +34,10 @@ impl Scene {
 }
 
 impl SceneBuilder {
+    /// Where the line from a joint to what it aims at starts, as a fraction of its bone: the base of a
+    /// head is its neck, so that its line starts at the eyes.
+    pub const AIM_START: f32 = 0.65;
+
     /// Returns the scene of a posed document with its overlays.
     pub fn build(&mut self, posed: &Posed, overlays: &Overlays, theme: Theme) -> Scene {
         let document = posed.document();

@@ -12,7 +12,7 @@ use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Balance, Joint, JointId, Skeleton, SkeletonPose};
 use crate::kinematics::skin::Skinning;
 use crate::rig::TargetReport;
-use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, SkinInstance};
+use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, SceneBuilder, SkinInstance};
 use crate::session::{OnionSkin, Overlays, ShownRegion};
 
 /// Number of lines of a drawn path, if its head has fewer keys.
@@ -225,8 +225,6 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, children: &mut V
     }
 }
 
-/// Where the line to what a bone aims at starts, as a fraction of the bone: the base of a head is its neck.
-pub(crate) const AIM_START: f32 = 0.65;
 /// Distance of a name from the highest tip of an onion skin, as a fraction of the figure's reach.
 const ABOVE_HEAD: f32 = 0.07;
 
@@ -333,7 +331,7 @@ impl DrawnSkeleton<'_> {
 
     /// Adds a line from a bone that aims to the point that it aims at.
     fn add_aim(&self, scene: &mut Scene, joint: JointId, to: Vec3) {
-        let from = self.pose.base(joint).lerp(self.pose.tip(joint), AIM_START);
+        let from = self.pose.base(joint).lerp(self.pose.tip(joint), SceneBuilder::AIM_START);
         let colour = scene.palette.accent;
         scene.lines.push(Line { from, to, colour, dashed: true });
     }
