@@ -11,7 +11,7 @@ use std::mem::discriminant;
 
 use egui::{
     Align2, Color32, Frame, Grid, Id, Modal, Pos2, Rect, Role, Shadow, Stroke, Ui, UiBuilder,
-    Visuals, WidgetInfo, Window, pos2, vec2,
+    WidgetInfo, Window, pos2, vec2,
 };
 
 use super::frame_times::Machine;
@@ -65,8 +65,8 @@ pub(in crate::ui) fn ui(
         dialog,
         Dialog::About | Dialog::Shortcuts | Dialog::Glossary | Dialog::Examples(_)
     );
-    let backdrop = backdrop(dialog, ui.visuals());
-    let closes = modal(ui, title, (has_close, backdrop), |ui| match dialog {
+    let is_page = matches!(dialog, Dialog::Examples(_));
+    let closes = modal(ui, title, (has_close, is_page), |ui| match dialog {
         Dialog::About => about(ui, machine),
         Dialog::Shortcuts => shortcuts::ui(ui, session),
         Dialog::Glossary => glossary::dialog(ui, actions),
@@ -123,29 +123,25 @@ fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
     now != before
 }
 
-/// What covers the window behind a modal one. Examples are a page of their own, since words that it cuts
-/// off would be read; a question lets what it is about be seen.
-fn backdrop(dialog: &Dialog, visuals: &Visuals) -> Color32 {
-    match (dialog, visuals.dark_mode) {
-        (Dialog::Examples(_), _) => visuals.window_fill,
-        (_, true) => Color32::from_black_alpha(150),
-        (_, false) => Color32::from_black_alpha(100),
-    }
-}
-
 /// Shows `contents` in a modal window, with a cross that closes it if there is nothing to answer.
 /// Returns whether the cross was pressed.
+///
+/// A page covers the whole window and has no edge, since words of the window that an edge cut off would be
+/// read. Other dialogs dim the window, so that what they ask about is seen.
 fn modal(
     ui: &Ui,
     title: &str,
-    (has_close, backdrop): (bool, Color32),
+    (has_close, is_page): (bool, bool),
     contents: impl FnOnce(&mut Ui),
 ) -> bool {
     let style = ui.global_style();
     let frame = Frame::window(&style).inner_margin(16.0);
-    // A page has no edge.
-    let is_page = backdrop == style.visuals.window_fill;
-    let frame = if is_page { frame.shadow(Shadow::NONE).stroke(Stroke::NONE) } else { frame };
+    let (frame, backdrop) = if is_page {
+        (frame.shadow(Shadow::NONE).stroke(Stroke::NONE), style.visuals.window_fill)
+    } else {
+        let dimness = if style.visuals.dark_mode { 150 } else { 100 };
+        (frame, Color32::from_black_alpha(dimness))
+    };
     let id = Id::unique(("dialog", title.to_owned()));
     let area = Modal::default_area(id).fade_in(false);
     let modal = Modal::new(id).area(area).frame(frame).backdrop_color(backdrop);
