@@ -253,6 +253,16 @@ impl Target {
         Some(self.present_space().to_world(pose).transform_point3(self.aim?.point))
     }
 
+    /// The ends of the line along which the joint aims, in the world, for a pose of the skeleton; `None`
+    /// without an aim. It starts at about two thirds of the bone: the base of a head is its neck, and
+    /// its eyes are there.
+    pub fn aim_line_in_world(&self, pose: &Skeleton) -> Option<[Vec3; 2]> {
+        const EYES: f32 = 0.65;
+        let point = self.aim_point_in_world(pose)?;
+        let joint = pose.joint(self.joint).map(|_| self.joint)?;
+        Some([pose.base(joint).lerp(pose.tip(joint), EYES), point])
+    }
+
     /// The point, in [`Target::present_space`], that is as far from the joint as the point of the aim
     /// and at which the joint aims in a pose of the skeleton; `None` without an aim.
     pub(super) fn aimed_ahead(&self, pose: &Skeleton) -> Option<Vec3> {

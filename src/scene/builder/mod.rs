@@ -34,10 +34,6 @@ impl Scene {
 }
 
 impl SceneBuilder {
-    /// Where the line from a joint to what it aims at starts, as a fraction of its bone: the base of a
-    /// head is its neck, so that its line starts at the eyes.
-    pub const AIM_START: f32 = 0.65;
-
     /// Returns the scene of a posed document with its overlays.
     pub fn build(&mut self, posed: &Posed, overlays: &Overlays, theme: Theme) -> Scene {
         let document = posed.document();

@@ -12,7 +12,7 @@ use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Balance, Joint, JointId, Skeleton, SkeletonPose};
 use crate::kinematics::skin::Skinning;
 use crate::rig::TargetReport;
-use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, SceneBuilder, SkinInstance};
+use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, SkinInstance};
 use crate::session::{OnionSkin, Overlays, ShownRegion};
 
 /// Number of lines of a drawn path, if its head has fewer keys.
@@ -180,8 +180,9 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
     }
     let is_lit = |it: JointId| overlays.selection.contains(&it) || overlays.hovered == Some(it);
     for target in rig.targets.iter().filter(|it| it.is_posing() && is_lit(it.joint)) {
-        if let Some(point) = target.aim_point_in_world(posed.skeleton()) {
-            drawn.add_aim(scene, target.joint, point);
+        if let Some([from, to]) = target.aim_line_in_world(posed.skeleton()) {
+            let colour = scene.palette.accent;
+            scene.lines.push(Line { from, to, colour, dashed: true });
         }
     }
     if display.shows(Overlay::Paths) {
@@ -327,13 +328,6 @@ impl DrawnSkeleton<'_> {
             }
             self.add_pole(scene, target, report, radius);
         }
-    }
-
-    /// Adds a line from a bone that aims to the point that it aims at.
-    fn add_aim(&self, scene: &mut Scene, joint: JointId, to: Vec3) {
-        let from = self.pose.base(joint).lerp(self.pose.tip(joint), SceneBuilder::AIM_START);
-        let colour = scene.palette.accent;
-        scene.lines.push(Line { from, to, colour, dashed: true });
     }
 
     fn target_radius(&self, joint: JointId) -> f32 {

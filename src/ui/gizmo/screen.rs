@@ -9,7 +9,6 @@ use glam::Vec3;
 use crate::document::{Camera, Overlay, Projection, Ray};
 use crate::kinematics::chain_ik::Ellipsoid;
 use crate::rig::LimbPart;
-use crate::scene::SceneBuilder;
 use crate::session::{Constraint, Drag, Session};
 use crate::ui::style;
 
@@ -143,9 +142,8 @@ pub(in crate::ui) fn aims(
     let pose = &session.posed().evaluated_skeleton().solved;
     let selected = session.selection().active();
     for target in session.rig().targets.iter().filter(|target| target.is_posing()) {
-        let Some(point) = target.aim_point_in_world(pose) else { continue };
-        let eyes = pose.base(target.joint).lerp(pose.tip(target.joint), SceneBuilder::AIM_START);
-        let ends = [eyes, point].map(|end| screen.place(end));
+        let Some(line) = target.aim_line_in_world(pose) else { continue };
+        let ends = line.map(|end| screen.place(end));
         let [Some(from), Some(to)] = ends else { continue };
         let is_selected = selected == Some(target.joint);
         if !is_selected && session.selection().hovered() != Some(target.joint) {
