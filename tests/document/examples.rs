@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DQuat, DVec2, DVec3, Vec3, Vec3Swizzles};
 use ik_arm::document::{Channel, Document};
 use ik_arm::io::Example;
 use ik_arm::kinematics::limb_ik::Limb;
@@ -479,5 +479,74 @@ fn the_humans_limbs_keep_their_volume_when_they_bend() {
             let ratio = at(bend) / straight;
             assert!((0.9..1.1).contains(&ratio), "{joint} by {bend}°: {ratio} of its volume");
         }
+    }
+}
+
+/// The normals at the vertices of a mesh by its triangles alone, each by its area.
+fn normals_of_faces(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
+    let mut normals = vec![DVec3::ZERO; positions.len()];
+    for corners in triangles.iter().map(|triangle| triangle.map(|corner| corner as usize)) {
+        let [a, b, c] = corners.map(|corner| positions[corner]);
+        corners.iter().for_each(|corner| normals[*corner] += (b - a).cross(c - a));
+    }
+    normals.into_iter().map(DVec3::normalize_or_zero).collect()
+}
+
+/// The normal of the surface that is farthest out on a line along x, through a point (y, z).
+fn outermost(
+    at: DVec2,
+    positions: &[DVec3],
+    normals: &[DVec3],
+    triangles: &[[u32; 3]],
+) -> Option<DVec3> {
+    let hit = |triangle: &[u32; 3]| {
+        let corners = triangle.map(|corner| corner as usize);
+        let around = corners.map(|corner| positions[corner].yz() - at);
+        let part = |one: usize| around[(one + 1) % 3].perp_dot(around[(one + 2) % 3]);
+        let twice = part(0) + part(1) + part(2);
+        let parts = [0, 1, 2].map(|one| part(one) / twice);
+        let sum = |of: &[DVec3]| (0..3).map(|one| parts[one] * of[corners[one]]).sum::<DVec3>();
+        parts.iter().all(|part| *part > 0.0).then(|| (sum(positions).x, sum(normals).normalize()))
+    };
+    let hits = triangles.iter().filter_map(hit);
+    hits.max_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, normal)| normal)
+}
+
+#[test]
+fn the_humans_hip_bends_without_a_crease() {
+    /// Distance in metres between neighbouring points, and how many there are in a row.
+    const STEP: f64 = 0.004;
+    const POINTS: usize = 31;
+    let human = opened("human");
+    let skin = human.rig.skin.as_ref().expect("a skin");
+    let mesh = &skin.mesh().expect("a mesh").mesh;
+    let mut skeleton = Skeleton::clone(human.skeleton());
+    skeleton.ids().for_each(|id| skeleton.set_rotation(id, Vec3::ZERO).expect("finite"));
+    let thigh = skeleton.find("left_thigh").expect("a joint");
+    for (bend, back) in [(45_f32, 0.0), (45.0, 1.0), (90.0, 0.0), (90.0, 1.0)] {
+        skeleton.set_rotation(thigh, Vec3::NEG_X * bend.to_radians()).expect("finite");
+        let posed = mesh.posed(&mesh.pose(&skeleton), skin.skinning).positions;
+        let from_below = DVec3::new(1.0, -1.0, -back).normalize();
+        let view = DQuat::from_rotation_arc(from_below, DVec3::X);
+        let positions: Vec<DVec3> = posed.iter().map(|at| view * at.as_dvec3()).collect();
+        let hip = view * skeleton.pose().base(thigh).as_dvec3();
+        let is_near = |corner: &u32| positions[*corner as usize].distance(hip) < 0.2;
+        let triangles = mesh.mesh().triangles.iter().copied();
+        let triangles: Vec<[u32; 3]> =
+            triangles.filter(|triangle| triangle.iter().all(is_near)).collect();
+        let normals = normals_of_faces(&positions, &triangles);
+        let normal = |row: usize, column: usize| {
+            let [row, column] = [row, column].map(|it| it as f64 - 0.5 * (POINTS - 1) as f64);
+            let at = hip.yz() + STEP * DVec2::new(row, column);
+            outermost(at, &positions, &normals, &triangles).expect("a surface")
+        };
+        let rows = (0..POINTS).map(|row| (0..POINTS).map(|it| normal(row, it)).collect());
+        let rows: Vec<Vec<DVec3>> = rows.collect();
+        let along = rows.iter().flat_map(|row| row.windows(2).map(|pair| pair[0].dot(pair[1])));
+        let across = rows.windows(2).flat_map(|two| two[0].iter().zip(&two[1]));
+        let sharpest = along.chain(across.map(|(one, next)| one.dot(*next))).fold(1.0, f64::min);
+
+        let case = format!("bent by {bend}°, seen from {from_below}");
+        assert!(sharpest > 0.85, "{case}: neighbours meet at an angle of cosine {sharpest}");
     }
 }

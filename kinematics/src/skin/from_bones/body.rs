@@ -22,10 +22,11 @@ pub struct SkinShape {
     /// Otherwise each tree of joints has one surface.
     ///
     /// A surface moves with its joint alone, except near a seam where a joint is at the tip of its
-    /// parent and both surfaces are about as thick there (radii that differ by less than 1.4 times):
-    /// within 1.4 radii to either side of such a seam, weights pass evenly from one joint to the
-    /// other, so that an elbow or a knee has no crease. Elsewhere, surfaces keep their volume in any
-    /// bend. At all seams normals turn to the mean of both, so that a seam is hardly seen.
+    /// parent, or at the side of a parent without a bone, and both surfaces are about as thick there
+    /// (radii that differ by less than 1.4 times): within 1.4 radii to either side of such a seam,
+    /// weights pass evenly from one joint to the other, so that an elbow, a knee or a hip has no
+    /// crease. Elsewhere, surfaces keep their volume in any bend. At all seams normals turn to the
+    /// mean of both, so that a seam is hardly seen.
     pub is_jointed: bool,
     /// Euler angles in radians of the joints in the pose in which the surface is made; 0 for joints
     /// that are not in the list, as in the bind pose.

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::body::{Body, is_at_tip};
 use super::field::{Field, FieldScratch};
@@ -21,15 +21,27 @@ pub struct Seam {
     bend: Option<Bend>,
 }
 
-/// The part of a limb that bends evenly: two bodies of about one radius, one at the tip of the other.
+/// The part of a limb that bends evenly: two bodies of about one radius, one at the tip of the other,
+/// or at the side of a body without a bone, as a thigh at a pelvis.
 #[derive(Clone, Copy, Debug)]
 struct Bend {
-    /// Where the two bones meet.
+    /// Where the weights of both joints are equal.
     centre: DVec3,
     /// Unit vector between the directions of the two bones.
     along: DVec3,
     /// The smaller radius of the two bodies.
     radius: f64,
+    side: Option<Side>,
+}
+
+/// The side of a body from which a limb goes out. Weights of the limb pass from none at the other side
+/// to all at this one, so that the middle, which limbs of both sides pull, stays in shape.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    /// A point in the middle of the body.
+    middle: DVec3,
+    /// From the middle to the side.
+    out: DVec3,
 }
 
 impl Seam {
@@ -44,9 +56,15 @@ impl Seam {
             let above = above.find(|above| body_of.contains_key(above))?;
             let bodies_of = [body_of[&above], *body];
             let joints = [above, *joint];
-            let is_at_tip = skeleton[*joint].parent == Some(above) && is_at_tip(skeleton, *joint);
-            let bend = || Bend::new(bodies_of.map(|body| bodies[body]), joints, &pose);
-            Some(Self { bodies: bodies_of, joints, bend: is_at_tip.then(bend).flatten() })
+            let bend = || {
+                let radius = Bend::radius(bodies_of.map(|body| bodies[body]), pose.base(*joint))?;
+                match is_at_tip(skeleton, *joint) {
+                    true => Bend::at_tip(joints, radius, &pose),
+                    false => Bend::at_side(joints, radius, &pose),
+                }
+            };
+            let is_child = skeleton[*joint].parent == Some(above);
+            Some(Self { bodies: bodies_of, joints, bend: is_child.then(bend).flatten() })
         };
         let mut seams: Vec<Self> = body_of.iter().filter_map(seam).collect();
         seams.sort_by_key(|seam| seam.joints[1]);
@@ -70,18 +88,33 @@ impl Bend {
     const HALF_LENGTH: f64 = 1.4;
     /// Distances from the centre, in radii, between which the weights of the other joint end.
     const END: [f64; 2] = [1.8, 2.6];
+    /// Distance, in radii, from a joint at a side to the centre of the bend, so that the fold is below
+    /// the body.
+    const BELOW: f64 = 0.3;
 
-    /// `None` if one of two joints, the lower of which is at the tip of the other, has a bone without
-    /// length or is much thicker there.
-    fn new(bodies: [&Body; 2], joints: [JointId; 2], pose: &SkeletonPose) -> Option<Self> {
-        let centre = pose.base(joints[1]).as_dvec3();
-        let direction = |it| (pose.tip(it).as_dvec3() - pose.base(it).as_dvec3()).try_normalize();
-        let along = (direction(joints[0])? + direction(joints[1])?).try_normalize()?;
-        let depth = |body: &Body| -Field::new(body).distance(centre, &mut FieldScratch::default());
+    /// The smaller radius of two bodies at a point; `None` if one of them is much thicker there.
+    fn radius(bodies: [&Body; 2], at: Vec3) -> Option<f64> {
+        let depth = |body| -Field::new(body).distance(at.as_dvec3(), &mut FieldScratch::default());
         let [one, other] = bodies.map(depth);
         let (radius, most) = (one.min(other), one.max(other));
-        let is_one_limb = radius > 0.0 && most <= Self::MOST_STEP * radius;
-        is_one_limb.then_some(Self { centre, along, radius })
+        (radius > 0.0 && most <= Self::MOST_STEP * radius).then_some(radius)
+    }
+
+    /// Of two bones, one at the tip of the other; `None` if one has no length.
+    fn at_tip([above, below]: [JointId; 2], radius: f64, pose: &SkeletonPose) -> Option<Self> {
+        let along = (direction(above, pose)? + direction(below, pose)?).try_normalize()?;
+        Some(Self { centre: pose.base(below).as_dvec3(), along, radius, side: None })
+    }
+
+    /// Of a bone that starts at a side of a joint without a bone; `None` if the joint has one, or if the
+    /// bone starts in its middle.
+    fn at_side([above, below]: [JointId; 2], radius: f64, pose: &SkeletonPose) -> Option<Self> {
+        let along = direction(below, pose)?;
+        let [middle, start] = [above, below].map(|joint| pose.base(joint).as_dvec3());
+        let out = (start - middle).reject_from_normalized(along);
+        let is_at_side = direction(above, pose).is_none() && out.length() > 0.5 * radius;
+        let centre = start + Self::BELOW * radius * along;
+        is_at_side.then_some(Self { centre, along, radius, side: Some(Side { middle, out }) })
     }
 
     /// The weights of the other joint for a vertex of either body: of the joint above, and of the
@@ -89,10 +122,23 @@ impl Bend {
     fn weights(&self, vertex: DVec3) -> [f64; 2] {
         let out = (vertex - self.centre) / self.radius;
         let [near, far] = Self::END;
-        let part = 1.0 - smooth_step((out.length() - near) / (far - near));
+        let of_side = self.side.map_or(1.0, |side| side.part(vertex));
+        let part = of_side * (1.0 - smooth_step((out.length() - near) / (far - near)));
         let below = smooth_step(0.5 + 0.5 * out.dot(self.along) / Self::HALF_LENGTH);
         [part * (1.0 - below), part * below]
     }
+}
+
+impl Side {
+    fn part(&self, vertex: DVec3) -> f64 {
+        let across = (vertex - self.middle).dot(self.out) / self.out.length_squared();
+        smooth_step(0.5 + 0.5 * across)
+    }
+}
+
+/// The direction of the bone of a joint, `None` if it has none.
+fn direction(joint: JointId, pose: &SkeletonPose) -> Option<DVec3> {
+    (pose.tip(joint).as_dvec3() - pose.base(joint).as_dvec3()).try_normalize()
 }
 
 fn smooth_step(x: f64) -> f64 {
