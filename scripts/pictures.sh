@@ -107,17 +107,20 @@ come_closer() {
     local part=1 to=(0 0 0)
     case $1 in
         arm) part=0.62 to=(60 -20 10) ;;
-        two-targets) part=0.6 ;;
-        table) part=0.9 ;;
-        ten-joints | pulled-apart | out-of-reach) part=0.72 ;;
+        two-targets) part=0.55 ;;
+        table) part=0.62 to=(0 0.2 0) ;;
+        ten-joints) part=0.62 to=(-0.1 -0.05 0) ;;
+        jumping-chain) part=0.7 ;;
+        keyframes) part=0.9 ;;
+        pulled-apart | out-of-reach) part=0.62 ;;
         inside-* | too-few-iterations) part=0.75 ;;
         locked) part=0.9 ;;
-        degenerate) part=0.6 ;;
+        degenerate) part=0.36 to=(0.3 -0.4 0) ;; # four of the five
         snake) part=0.6 to=(0.55 0 0.75) ;;
         walk) part=0.68 to=(0 0 "$(awk "BEGIN { print 1.41 * ($3 - 1) }")") ;; # metres in a second
         human) part=0.88 ;;
         wheel) part=0.9 ;;
-        tadpoles) part=0.82 ;;
+        tadpoles) part=0.74 ;;
         reaching-down) part=0.8 ;;
         looking-at-the-hand) part=1 ;;
     esac

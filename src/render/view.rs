@@ -61,7 +61,7 @@ impl ViewData {
         let (palette, planes) = (&scene.palette, &scene.planes);
         let projection = scene.camera.projection(width as f32 / height as f32);
         let screen = |colour: Colour| Vec4::from_array(colour.channels());
-        // Nothing is between the eye and the lower half of a globe.
+        // Nothing is between the eye and the lower half of a globe, nor in its middle.
         let has_globe = scene.globe.filter(Globe::has_size).is_some();
         let ground = palette.ground.with_opacity(planes.ground_opacity);
         let shown = |colour: Colour, is_shown: bool| {
@@ -76,7 +76,7 @@ impl ViewData {
             right: projection.right,
             pixel_scale: scale,
             up: projection.up,
-            shadow_strength: palette.shadow,
+            shadow_strength: if has_globe { 0.0 } else { palette.shadow },
             planes_centre: planes.centre,
             planes_radius: planes.radius,
             size: Vec2::new(width as f32, height as f32),

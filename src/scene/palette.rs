@@ -192,7 +192,7 @@ impl Palette {
 }
 
 fn ramp(hex: [u32; Palette::GAINS]) -> [Colour; Palette::GAINS] {
-    const OPACITY: [f32; Palette::GAINS] = [0.14, 0.2, 0.26, 0.37, 0.5];
+    const OPACITY: [f32; Palette::GAINS] = [0.03, 0.12, 0.22, 0.34, 0.46];
     std::array::from_fn(|step| Colour::rgb(hex[step]).with_opacity(OPACITY[step]))
 }
 

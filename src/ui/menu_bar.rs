@@ -57,16 +57,9 @@ fn item<A: Into<Action>>(
     action: impl FnOnce() -> A,
     actions: &mut Actions,
 ) {
-    let button = Button::new(name);
-    if ui.add(if keys.is_empty() { button } else { button.shortcut_text(keys) }).clicked() {
+    if widgets::menu_item(ui, name, keys, "", None) {
         actions.push(action());
     }
-}
-
-/// Shows an item with a tooltip, which may be empty, and returns whether it was pressed. `why_not`
-/// is the reason why it is disabled; `None` enables it.
-fn explained_item(ui: &mut Ui, button: Button<'_>, tooltip: &str, why_not: Option<&str>) -> bool {
-    widgets::explained(ui.add_enabled(why_not.is_none(), button), tooltip, why_not).clicked()
 }
 
 fn file(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -102,8 +95,7 @@ fn contents(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let several = session.files().contents().filter(|contents| contents.has_choice());
     let none = "The file has no other skeleton or animation";
     let why_not = several.is_none().then_some(none);
-    let button = Button::new("Skeletons and animations…");
-    let is_pressed = explained_item(ui, button, "", why_not);
+    let is_pressed = widgets::menu_item(ui, "Skeletons and animations…", "", "", why_not);
     if let Some(contents) = several.filter(|_| is_pressed) {
         actions.push(ShellAction::OpenDialog(Dialog::ChooseContents(Box::new(contents.clone()))));
     }
@@ -128,22 +120,21 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     bake(ui, session, actions);
     let too_few = "The figure has too few joints for two arms and two legs";
     let why_not = (!panels::may_be_person(session)).then_some(too_few);
-    if explained_item(ui, Button::new("Add targets"), panels::ADD_TARGETS, why_not) {
+    if widgets::menu_item(ui, "Add targets", "", panels::ADD_TARGETS, why_not) {
         actions.push(TargetEdit::AddHumanoidTargets);
     }
     let tooltip = "Turn a figure that stands along z by −90° about x";
-    if explained_item(ui, Button::new("Turn to y up"), tooltip, None) {
+    if widgets::menu_item(ui, "Turn to y up", "", tooltip, None) {
         actions.push(JointEdit::TurnYUp);
     }
     ui.separator();
-    let copy = Button::new("Copy pose as JSON line").shortcut_text("Ctrl+C");
     let why_no_copy = session.limb().is_none().then_some("There is no limb to copy");
-    if explained_item(ui, copy, "", why_no_copy) {
+    if widgets::menu_item(ui, "Copy pose as JSON line", "Ctrl+C", "", why_no_copy) {
         actions.push(ShellAction::CopyPose);
     }
     let tooltip =
         "Copy a link that carries this document: the page in a browser and ik-arm open it";
-    if explained_item(ui, Button::new("Copy link"), tooltip, None) {
+    if widgets::menu_item(ui, "Copy link", "", tooltip, None) {
         actions.push(FileAction::CopyLink);
     }
     ui.separator();
@@ -164,8 +155,8 @@ fn bake(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let document = session.document();
     let is_posed = !document.rig.targets.is_empty() || document.follows_path();
     let why_not = (!is_posed).then_some("Add a target or a path: nothing else poses the joints");
-    let button = Button::new("Bake to keys…");
-    if explained_item(ui, button, "Replace targets and path by keys", why_not) {
+    let tooltip = "Replace targets and path by keys";
+    if widgets::menu_item(ui, "Bake to keys…", "", tooltip, why_not) {
         actions.push(ShellAction::OpenDialog(Dialog::bake(session.document())));
     }
 }

@@ -5,7 +5,7 @@
 //! committing.
 
 use crate::common::arm::Arm;
-use glam::{Affine3A, DVec3, Mat3, Vec3};
+use glam::{Affine3A, DVec3, Mat3, Vec2, Vec3};
 use ik_arm::document::{AxisView, Camera, Display, Document, Overlay, Theme};
 use ik_arm::kinematics::skin::TriangleMesh;
 use ik_arm::kinematics::twist::{Stereographic, TwistReference};
@@ -91,33 +91,45 @@ fn picture(scene: &Scene, side: u32) -> RgbaImage {
     block_on(PictureRenderer::new(&gpu, side, side, 1.0).draw(scene)).expect("drawn")
 }
 
-/// Expected colours of a pixel of the globe, if they are smooth there: the
-/// ramp's for the library's own gain where the far and the near side are met, laid over the sky.
-fn expected(scene: &Scene, at: (u32, u32), side: u32, sky: [f64; 3]) -> Option<[f64; 3]> {
+/// The gains at a place of a picture in pixels: of the far side and of the near one if it is in front of the camera,
+/// each with its part of the opacity; `None` towards the rim, where the globe is denser.
+fn gains(scene: &Scene, at: Vec2, side: u32) -> Option<Vec<(f64, f64)>> {
     const NEAR_OPACITY: f64 = 0.45;
     let globe = scene.globe?;
     let (radius, centre) = (f64::from(globe.radius), globe.centre.as_dvec3());
-    let ray = scene.camera.projection(1.0).ray(glam::Vec2::new(
-        (at.0 as f32 + 0.5) / side as f32 * 2.0 - 1.0,
-        1.0 - (at.1 as f32 + 0.5) / side as f32 * 2.0,
-    ));
+    let from_middle = at / side as f32 * 2.0 - 1.0;
+    let ray = scene.camera.projection(1.0).ray(from_middle * Vec2::new(1.0, -1.0));
     let (origin, direction) =
         (ray.origin.as_dvec3() - centre, ray.direction.as_dvec3().normalize());
     let middle = -origin.dot(direction);
     let half = (radius * radius - (origin + direction * middle).length_squared()).sqrt();
-    // Towards the rim the globe is denser.
     (half > 0.65 * radius).then_some(())?;
     let near_is_seen = middle > half || scene.camera.orthographic;
     let sides = [(middle + half, 1.0), (middle - half, NEAR_OPACITY)];
+    let sides = sides.into_iter().take(1 + usize::from(near_is_seen));
+    let gain = |along: f64| gain(globe.reference, (origin + direction * along) / radius);
+    Some(sides.map(|(along, share)| (gain(along), share)).collect())
+}
+
+/// Expected colours of a pixel of the globe, if no line is near: the ramp's for the library's own gain
+/// where the far and the near side are met, laid over the sky.
+fn expected(scene: &Scene, (x, y): (u32, u32), side: u32, sky: [f64; 3]) -> Option<[f64; 3]> {
+    /// Pixels from a line, which reaches 1.15 pixels, within which it may be seen.
+    const LINE: f64 = 1.6;
+    let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+    let here = gains(scene, at, side)?;
+    // The GPU takes the slope from either neighbour.
+    let beside = [Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y];
+    let beside = beside.map(|by| gains(scene, at + by, side));
     let mut colour = sky;
-    for (along, share) in sides.into_iter().take(1 + usize::from(near_is_seen)) {
-        let gain = gain(globe.reference, (origin + direction * along) / radius);
-        // A line reaches 1.15 pixels to each side, and fades out where the level, the logarithm of
-        // 1 + gain, changes by 0.2 per pixel.
+    for (index, (gain, share)) in here.into_iter().enumerate() {
         let level = gain.ln_1p();
-        let between_lines =
-            [1.0, 2.0, 5.0].iter().all(|line: &f64| (level - line.ln_1p()).abs() > 0.23);
-        between_lines.then_some(())?;
+        let step =
+            |of: &Option<Vec<(f64, f64)>>| Some((of.as_ref()?[index].0.ln_1p() - level).abs());
+        let [right, left, below, above] = beside.each_ref().map(step);
+        let steep = right?.max(left?) + below?.max(above?);
+        let off = |line: f64| (level - line.ln_1p()).abs();
+        [1.0, 2.0, 5.0].into_iter().all(|line| off(line) > LINE * steep).then_some(())?;
         let [r, g, b, a] = scene.palette.gain(gain as f32).channels().map(f64::from);
         let a = a * share;
         colour = [0, 1, 2].map(|channel| colour[channel] * (1.0 - a) + [r, g, b][channel] * a);

@@ -4,7 +4,7 @@ use core::f32::consts::FRAC_PI_2;
 
 use egui::accesskit::Role;
 use egui::epaint::text::MissingGlyphPolicy;
-use egui::{Key, Modifiers, vec2};
+use egui::{Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::{Target, TargetPath};
@@ -74,7 +74,7 @@ fn a_new_skeleton_is_a_locked_root_and_a_chain_can_be_added_to_it() {
 #[test]
 fn a_joint_can_be_renamed_but_not_to_a_name_in_use() {
     let mut bench = built();
-    bench.click(Role::Button, "Rename…");
+    bench.choose(&["More", "Rename…"]);
     bench.key_with(Modifiers::COMMAND, Key::A);
     bench.frame([egui::Event::Text("hand".to_owned())]);
     bench.key(Key::Enter);
@@ -91,7 +91,7 @@ fn a_name_may_have_letters_of_any_script_and_letters_that_no_font_has() {
     // Letters that no font has are boxes.
     bench.harness.ctx.set_missing_glyph_policy(MissingGlyphPolicy::Tofu);
     for name in ["Hüfte", "左手", "\u{10fffd}"] {
-        bench.click(Role::Button, "Rename…");
+        bench.choose(&["More", "Rename…"]);
         bench.key_with(Modifiers::COMMAND, Key::A);
         bench.frame([egui::Event::Text(name.to_owned())]);
         bench.key(Key::Enter);
@@ -105,12 +105,12 @@ fn a_name_may_have_letters_of_any_script_and_letters_that_no_font_has() {
 fn a_joint_is_deleted_with_its_subtree_and_its_parent_is_selected() {
     let mut bench = built();
     select(&mut bench, "joint_1");
-    bench.click(Role::Button, "Delete");
+    bench.choose(&["More", "Delete"]);
     bench.click(Role::Button, "Delete children too");
     assert_eq!(names(&bench), ["root", "joint"]);
     assert_eq!(bench.session().selection().joints(), [1].map(JointId::new));
     select(&mut bench, "root");
-    bench.click(Role::Button, "Delete");
+    bench.choose(&["More", "Delete"]);
     bench.click(Role::Button, "Delete children too");
     assert!(names(&bench).is_empty());
     assert!(bench.says("No joints"));
@@ -119,12 +119,27 @@ fn a_joint_is_deleted_with_its_subtree_and_its_parent_is_selected() {
 }
 
 #[test]
+fn a_right_click_on_a_joint_selects_it_and_opens_its_menu() {
+    let mut bench = built();
+    select(&mut bench, "root");
+    bench.move_to(bench.rect(Role::Button, "Joint joint_2").center());
+    bench.press(PointerButton::Secondary);
+    bench.release(PointerButton::Secondary);
+    bench.settle();
+    assert_eq!(bench.session().selection().joints(), [3].map(JointId::new));
+    bench.choose(&["Delete"]);
+    assert_eq!(names(&bench), ["root", "joint", "joint_1"]);
+}
+
+#[test]
 fn controls_that_need_a_selection_are_disabled_without_one() {
     let mut bench = built();
     bench.apply([SelectAction::Joints(Vec::new())]);
-    for name in ["Delete", "Rename…", "Add target"] {
+    bench.choose(&["More"]);
+    for name in ["Delete Delete", "Rename… F2", "Add target T"] {
         assert!(!is_enabled(&bench, Role::Button, name), "{name}");
     }
+    bench.key(Key::Escape);
     for name in ["Run", "Step", "Reset"] {
         assert!(!is_enabled(&bench, Role::Button, name), "{name} without a target");
     }
@@ -193,11 +208,11 @@ fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
         select(&mut bench, "joint");
         bench.click(Role::Button, "Add child");
         bench.click(Role::Button, "Add child");
-        bench.click(Role::Button, "Add target");
+        bench.choose(&["More", "Add target"]);
         bench.enter("Target x", "0.9");
         bench.enter("Target y", "1.6");
         select(&mut bench, "joint_2");
-        bench.click(Role::Button, "Add target");
+        bench.choose(&["More", "Add target"]);
         bench.enter("Target x", "-0.8");
         bench.enter("Target y", "1.9");
         assert_eq!(bench.session().rig().targets.len(), 2);
@@ -375,7 +390,7 @@ fn a_race_runs_every_solver_from_the_same_start_and_leaves_the_skeleton() {
 fn a_solver_that_cannot_run_says_so_in_the_race() {
     let mut bench = built();
     select(&mut bench, "joint");
-    bench.click(Role::Button, "Add target");
+    bench.choose(&["More", "Add target"]);
     bench.show_tab(PanelTab::Race);
     bench.click_at(bench.rect(Role::Button, "Race all solvers").center());
     bench.wait(1.0);
@@ -388,7 +403,7 @@ fn a_solver_that_cannot_run_says_so_in_the_race() {
 #[test]
 fn a_moving_target_moves_during_playback_and_the_skeleton_follows() {
     let mut bench = built();
-    bench.click(Role::Button, "Add target");
+    bench.choose(&["More", "Add target"]);
     bench.reveal(Role::ComboBox, "Motion");
     bench.click_at(bench.rect(Role::ComboBox, "Motion").center());
     bench.wait(0.1);
@@ -551,7 +566,7 @@ fn the_stiffness_of_free_roots_is_set_on_the_solver_page() {
 #[test]
 fn the_posture_rate_is_set_on_the_solver_page() {
     let mut bench = built();
-    bench.click(Role::Button, "Add target");
+    bench.choose(&["More", "Add target"]);
     bench.reveal(Role::SpinButton, "Posture rate");
     bench.click(Role::SpinButton, "Posture rate");
     bench.key_with(Modifiers::COMMAND, Key::A);
@@ -564,7 +579,7 @@ fn the_posture_rate_is_set_on_the_solver_page() {
 #[test]
 fn the_mobility_of_roots_is_one_choice_of_three() {
     let mut bench = built();
-    bench.click(Role::Button, "Add target");
+    bench.choose(&["More", "Add target"]);
     for (name, root) in [("Locked", Root::Locked), ("Free", Root::Free), ("Turns", Root::Turns)] {
         bench.click(Role::Button, name);
         assert_eq!(bench.session().rig().solver.root, root);
@@ -574,7 +589,7 @@ fn the_mobility_of_roots_is_one_choice_of_three() {
 #[test]
 fn a_root_that_is_free_is_moved_by_the_solver() {
     let mut bench = built();
-    bench.click(Role::Button, "Add target");
+    bench.choose(&["More", "Add target"]);
     bench.click(Role::Button, "Free");
     assert_eq!(bench.session().rig().solver.root, Root::Free);
     bench.reveal(Role::Slider, "Target x");

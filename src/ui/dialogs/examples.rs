@@ -15,8 +15,9 @@ use crate::io::{Example, ExampleGroup};
 use crate::session::{Actions, Dialog, FileAction, ShellAction};
 use crate::ui::{style, widgets};
 
-/// Size of a picture in points.
-const PICTURE: Vec2 = vec2(192.0, 120.0);
+/// Least and greatest width of a picture in points, and its height as a part of that.
+const WIDTHS: [f32; 2] = [192.0, 240.0];
+const HEIGHT: f32 = 0.625;
 /// Height of the title below a picture.
 const TITLE: f32 = 24.0;
 const GAP: f32 = 12.0;
@@ -36,11 +37,15 @@ const DECODED_AT_ONCE: usize = 2;
 /// Shows the examples of a group.
 pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
     let window = ui.ctx().content_rect().size();
-    let columns = ((window.x - 80.0) / (PICTURE.x + GAP)).floor() as usize;
+    let room = window.x - 80.0;
+    let columns = ((room + GAP) / (WIDTHS[0] + GAP)).floor() as usize;
     let columns = columns.clamp(1, MOST_COLUMNS);
-    let pictures_width = columns as f32 * (PICTURE.x + GAP) - GAP;
+    let width = (room + GAP) / columns as f32 - GAP;
+    let width = width.clamp(WIDTHS[0], WIDTHS[1]).floor();
+    let picture = vec2(width, (HEIGHT * width).round());
+    let pictures_width = columns as f32 * (width + GAP) - GAP;
     let examples: Vec<Example> = Example::of(group).collect();
-    let row = PICTURE.y + TITLE + GAP;
+    let row = picture.y + TITLE + GAP;
     let most_rows = ((window.y - FRAME) / row).floor().clamp(1.0, MOST_ROWS) as usize;
     // The page keeps its size while the groups change.
     let groups = || ExampleGroup::ALL.into_iter();
@@ -64,7 +69,7 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
         for row in examples.chunks(columns) {
             ui.horizontal(|ui| {
                 for example in row {
-                    let card = card(ui, example, &mut pictures);
+                    let card = card(ui, example, picture, &mut pictures);
                     if card.clicked() {
                         actions.push(ShellAction::CloseDialog);
                         actions.push(FileAction::OpenExample(*example));
@@ -105,14 +110,14 @@ fn say(ui: &mut Ui, rect: Rect, example: Option<Example>) {
 }
 
 /// Shows an example's picture and title, and plays the picture under the mouse.
-fn card(ui: &mut Ui, example: &Example, pictures: &mut Pictures) -> Response {
-    let (rect, card) = ui.allocate_exact_size(PICTURE + vec2(0.0, TITLE), Sense::click());
+fn card(ui: &mut Ui, example: &Example, size: Vec2, pictures: &mut Pictures) -> Response {
+    let (rect, card) = ui.allocate_exact_size(size + vec2(0.0, TITLE), Sense::click());
     card.widget_info(|| WidgetInfo::labeled(Role::Button, true, example.title));
     if !ui.is_rect_visible(rect) {
         return card;
     }
     let is_chosen = card.hovered() || card.has_focus();
-    let picture = Rect::from_min_size(rect.min, PICTURE);
+    let picture = Rect::from_min_size(rect.min, size);
     let rounding = CornerRadius::same(6);
     let visuals = ui.visuals();
     let painter = ui.painter();

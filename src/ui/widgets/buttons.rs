@@ -55,12 +55,6 @@ pub(in crate::ui) enum Icon {
     Loop,
     Fold,
     Close,
-    AddChild,
-    AddRoot,
-    Delete,
-    Rename,
-    AddTarget,
-    RemoveTarget,
 }
 
 /// An icon button; `disabled` is the reason shown while the button is disabled, `None` otherwise.
@@ -71,8 +65,6 @@ pub(in crate::ui) struct IconButton<'a> {
     /// State of a toggle; `None` for other buttons.
     pub on: Option<bool>,
     pub disabled: Option<&'a str>,
-    /// True if its ground is painted only under the mouse.
-    pub is_quiet: bool,
 }
 
 impl<'a> IconButton<'a> {
@@ -81,12 +73,7 @@ impl<'a> IconButton<'a> {
 
     /// A button that is not a toggle.
     pub fn new(icon: Icon, name: &'a str, tooltip: &'a str, disabled: Option<&'a str>) -> Self {
-        Self { icon, name, tooltip, on: None, disabled, is_quiet: false }
-    }
-
-    /// The button without a ground, for a row of several beside a title.
-    pub fn quiet(self) -> Self {
-        Self { is_quiet: true, ..self }
+        Self { icon, name, tooltip, on: None, disabled }
     }
 
     /// Shows the button and returns whether it was pressed.
@@ -109,11 +96,8 @@ impl<'a> IconButton<'a> {
         let on = self.on == Some(true);
         let visuals = ui.style().interact_selectable(&response, on);
         let painter = ui.painter();
-        let round = visuals.corner_radius;
-        if !self.is_quiet || response.hovered() || response.has_focus() {
-            let (fill, stroke) = (visuals.weak_bg_fill, visuals.bg_stroke);
-            painter.rect(rect, round, fill, stroke, egui::StrokeKind::Inside);
-        }
+        let (fill, stroke) = (visuals.weak_bg_fill, visuals.bg_stroke);
+        painter.rect(rect, visuals.corner_radius, fill, stroke, egui::StrokeKind::Inside);
         self.icon.paint(painter, rect.center(), visuals.fg_stroke.color);
         response
     }
@@ -130,13 +114,6 @@ impl Icon {
             painter.rect_filled(Rect::from_min_max(at(from, -5.0), at(to, 5.0)), 0.5, colour);
         };
         let thin = Stroke::new(1.5, colour);
-        let line = |ends: [(f32, f32); 2]| {
-            painter.line_segment(ends.map(|(x, y)| at(x, y)), thin);
-        };
-        let plus = |at: Pos2| {
-            painter.line_segment([at - vec2(2.5, 0.0), at + vec2(2.5, 0.0)], thin);
-            painter.line_segment([at - vec2(0.0, 2.5), at + vec2(0.0, 2.5)], thin);
-        };
         let cross = |at: Pos2, half: f32| {
             painter.line_segment([at - Vec2::splat(half), at + Vec2::splat(half)], thin);
             painter.line_segment([at - vec2(half, -half), at + vec2(half, -half)], thin);
@@ -160,38 +137,6 @@ impl Icon {
             }
             Self::Fold => shape(&[(-5.5, -3.0), (5.5, -3.0), (0.0, 4.0)]),
             Self::Close => cross(at(0.0, 0.0), 4.5),
-            Self::AddChild => {
-                line([(-7.0, 4.0), (-1.5, -2.5)]);
-                painter.circle_filled(at(-7.0, 4.0), 2.2, colour);
-                painter.circle_filled(at(-1.5, -2.5), 2.2, colour);
-                plus(at(5.0, 2.0));
-            }
-            Self::AddRoot => {
-                painter.circle_filled(at(-4.5, 0.0), 2.6, colour);
-                plus(at(4.0, 0.0));
-            }
-            Self::Delete => {
-                line([(-5.5, -4.0), (5.5, -4.0)]);
-                line([(-1.5, -6.0), (1.5, -6.0)]);
-                line([(-4.0, -4.0), (-3.2, 6.0)]);
-                line([(4.0, -4.0), (3.2, 6.0)]);
-                line([(-3.2, 6.0), (3.2, 6.0)]);
-            }
-            Self::Rename => {
-                line([(-5.0, 5.0), (-4.2, 2.0)]);
-                line([(-4.2, 2.0), (3.2, -5.4)]);
-                line([(3.2, -5.4), (5.4, -3.2)]);
-                line([(5.4, -3.2), (-2.0, 4.2)]);
-                line([(-2.0, 4.2), (-5.0, 5.0)]);
-            }
-            Self::AddTarget | Self::RemoveTarget => {
-                painter.circle_stroke(at(-3.0, 0.0), 4.5, thin);
-                painter.circle_filled(at(-3.0, 0.0), 1.6, colour);
-                match self {
-                    Self::AddTarget => plus(at(6.0, 0.0)),
-                    _ => line([(3.5, 0.0), (8.5, 0.0)]),
-                }
-            }
             Self::Loop => {
                 let place = |turn: f32| at(5.5 * turn.cos(), 5.5 * turn.sin());
                 let ends = (0.35 * core::f32::consts::PI, 1.85 * core::f32::consts::PI);

@@ -165,6 +165,20 @@ pub(in crate::ui) fn explained(
     }
 }
 
+/// Shows an item of a menu, and returns whether it was pressed. `keys` is its shortcut; it and the
+/// tooltip may be empty. `disabled` is the reason why it is disabled; `None` enables it.
+pub(in crate::ui) fn menu_item(
+    ui: &mut Ui,
+    name: &str,
+    keys: &str,
+    tooltip: &str,
+    disabled: Option<&str>,
+) -> bool {
+    let button = Button::new(name);
+    let button = if keys.is_empty() { button } else { button.shortcut_text(keys) };
+    explained(ui.add_enabled(disabled.is_none(), button), tooltip, disabled).clicked()
+}
+
 /// Shows a check box, and returns its state if the user changed it. An empty `tooltip` shows none.
 /// `disabled` is the reason why it is disabled; `None` enables it.
 pub(in crate::ui) fn check_box(

@@ -12,7 +12,8 @@ pub(in crate::ui) use buttons::{
     Icon, IconButton, KeyButton, button, diamond, fold_mark, primary_button, wide_button,
 };
 pub(in crate::ui) use choices::{
-    Choice, check_box, check_boxes, explained, name, overlay_check_box, segment, segments, tabs,
+    Choice, check_box, check_boxes, explained, menu_item, name, overlay_check_box, segment,
+    segments, tabs,
 };
 pub(in crate::ui) use number::{DragNumber, NumberField, frame_rate};
 pub(in crate::ui) use plot::colour_bar;

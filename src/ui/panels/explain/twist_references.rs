@@ -30,7 +30,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, limb: &ShownLimb, action
 /// Shows the colour bar of the singularity globe, on a logarithmic scale of the gain. `middle` is
 /// the word for the middle joint of the limb.
 pub(in crate::ui) fn globe_legend(ui: &mut Ui, middle: &str) {
-    ui.label(format!("1° of Pointer turns the {middle} by"));
+    ui.label(format!("{} swing", capital(middle)));
     let summary = "Gain: elbow degrees per degree of the Pointer, 0 to 8 and more";
     let (palette, end) = (style::palette(ui), Palette::MAX_GAIN.ln_1p());
     let colour = |place: f32| {
@@ -40,7 +40,7 @@ pub(in crate::ui) fn globe_legend(ui: &mut Ui, middle: &str) {
     let gains = [(0.0, "0°"), (1.0, "1°"), (2.0, "2°"), (5.0, "5°"), (Palette::MAX_GAIN, "8°+")];
     let marks = gains.map(|(gain, text)| (f32::ln_1p(gain) / end, text));
     widgets::colour_bar(ui, summary, colour, &marks);
-    ui.weak(format!("Singular: the {middle} spins"));
+    ui.weak("for each 1° the Pointer turns");
 }
 
 fn table(ui: &mut Ui, limb: &ShownLimb, path: &TransportPath, actions: &mut Actions) {

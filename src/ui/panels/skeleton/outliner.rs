@@ -1,4 +1,4 @@
-//! The outliner: the tree of joints, their selection, a filter, and buttons that edit the tree.
+//! The outliner: the tree of joints, their selection, a filter, and what edits the tree.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use egui::{
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::session::{Actions, JointEdit, SelectAction, Session};
 use crate::ui::keyboard::{focus, viewport};
-use crate::ui::widgets::{self, Icon, IconButton};
+use crate::ui::widgets;
 use crate::ui::{commands, style};
 
 const ROW: f32 = 20.0;
@@ -25,6 +25,7 @@ const FOLDED_FROM: usize = 4;
 const MOST_ROWS: usize = 12;
 const FOLDED_ROWS: usize = 8;
 
+const ADD_ROOT: &str = "Add a joint that starts a tree";
 const NONE_SELECTED: &str = "Select a joint first";
 
 /// Shows the outliner in a panel of its own: as high as the joints of a small figure, and for others
@@ -411,10 +412,13 @@ fn respond(
     response: &Response,
     actions: &mut Actions,
 ) {
+    response.context_menu(|ui| menu(ui, session, actions));
     // egui reports Space on the focused row as a click, but here Space plays or pauses.
     let by_space = response.has_focus() && ui.input(|input| input.key_pressed(Key::Space));
     if response.double_clicked() {
         actions.push(commands::rename(session, row.joint));
+    } else if response.secondary_clicked() && !session.selection().joints().contains(&row.joint) {
+        actions.push(SelectAction::Joints(vec![row.joint]));
     } else if response.clicked() && !by_space {
         response.request_focus();
         let modifiers = ui.input(|input| input.modifiers);
@@ -446,37 +450,46 @@ fn respond(
     }
 }
 
+/// Shows the buttons of the title, from right to left.
 fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let selected = session.selection().active();
-    let none = selected.is_none().then_some(NONE_SELECTED);
-    ui.spacing_mut().item_spacing.x = 0.0;
+    let more = ui.menu_button("More", |ui| menu(ui, session, actions));
+    more.response.on_hover_text("Rename or delete joints, and give them targets");
+    if session.skeleton().joints().is_empty() {
+        if widgets::button(ui, "Add root", ADD_ROOT, None) {
+            actions.push(JointEdit::AddRoot);
+        }
+        return;
+    }
     let tooltip = "Add a child joint (A, or Ctrl+click in the viewport)";
-    if IconButton::new(Icon::AddChild, "Add child", tooltip, None).quiet().show(ui) {
+    if widgets::button(ui, "Add child", tooltip, None) {
         actions.push(JointEdit::AddJoint { tip: None });
     }
-    let tooltip = "Add a root joint, the start of another tree";
-    if IconButton::new(Icon::AddRoot, "Add root", tooltip, None).quiet().show(ui) {
+}
+
+/// Shows the items that edit the selected joints.
+fn menu(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let selected = session.selection().active();
+    let none = selected.is_none().then_some(NONE_SELECTED);
+    if widgets::menu_item(ui, "Add root", "", ADD_ROOT, None) {
         actions.push(JointEdit::AddRoot);
     }
-    let tooltip = "Delete the selected joints (Delete)";
-    if IconButton::new(Icon::Delete, "Delete", tooltip, none).quiet().show(ui) {
-        actions.push(commands::delete(session));
+    let has_target = selected.is_some_and(|joint| session.rig().target_of_end(joint).is_some());
+    let (name, tooltip) = match has_target {
+        true => {
+            ("Remove target", "Remove the target of the selected joint: its own angles pose it")
+        }
+        false => ("Add target", "Add a point that the selected joint's tip should reach"),
+    };
+    if widgets::menu_item(ui, name, "T", tooltip, none) {
+        actions.extend(commands::toggle_target(session));
     }
-    let tooltip = "Rename the selected joint (F2)";
-    if IconButton::new(Icon::Rename, "Rename…", tooltip, none).quiet().show(ui)
+    ui.separator();
+    if widgets::menu_item(ui, "Rename…", "F2", "", none)
         && let Some(joint) = selected
     {
         actions.push(commands::rename(session, joint));
     }
-    let has_target = selected.is_some_and(|joint| session.rig().target_of_end(joint).is_some());
-    let (icon, name, tooltip) = if has_target {
-        let tooltip = "Remove the target of the selected joint (T)";
-        (Icon::RemoveTarget, "Remove target", tooltip)
-    } else {
-        let tooltip = "Add a target for the selected joint's tip (T)";
-        (Icon::AddTarget, "Add target", tooltip)
-    };
-    if IconButton::new(icon, name, tooltip, none).quiet().show(ui) {
-        actions.extend(commands::toggle_target(session));
+    if widgets::menu_item(ui, "Delete", "Delete", "", none) {
+        actions.push(commands::delete(session));
     }
 }
