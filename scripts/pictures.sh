@@ -108,21 +108,21 @@ come_closer() {
     case $1 in
         arm) part=0.62 to=(60 -20 10) ;;
         two-targets) part=0.55 ;;
-        table) part=0.62 to=(0 0.2 0) ;;
+        table) part=0.9 to=(0 -0.04 0) ;;
         ten-joints) part=0.62 to=(-0.1 -0.05 0) ;;
         jumping-chain) part=0.7 ;;
         keyframes) part=0.9 ;;
         pulled-apart | out-of-reach) part=0.62 ;;
         inside-* | too-few-iterations) part=0.75 ;;
         locked) part=0.9 ;;
-        degenerate) part=0.36 to=(0.3 -0.4 0) ;; # four of the five
+        degenerate) part=0.55 to=(0.3 -0.1 0) ;;
         snake) part=0.6 to=(0.55 0 0.75) ;;
         walk) part=0.68 to=(0 0 "$(awk "BEGIN { print 1.41 * ($3 - 1) }")") ;; # metres in a second
         human) part=0.88 ;;
         wheel) part=0.9 ;;
-        tadpoles) part=0.74 ;;
+        tadpoles) part=0.8 to=(-0.04 0 0.05) ;;
         reaching-down) part=0.8 ;;
-        looking-at-the-hand) part=1 ;;
+        looking-at-the-hand) part=1.25 to=(0 -0.2 0) ;;
     esac
     python3 - "$2" "$part" "${to[@]}" <<'END'
 import json, sys

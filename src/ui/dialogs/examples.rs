@@ -2,11 +2,10 @@
 
 use std::collections::HashMap;
 
-use egui::text::LayoutJob;
 use egui::{
-    Align, Align2, Color32, ColorImage, CornerRadius, FontSelection, Id, Label, Rect, Response,
-    RichText, Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle, TextureHandle,
-    TextureOptions, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
+    Align, Align2, Color32, ColorImage, CornerRadius, Id, Layout, Rect, Response, Role, ScrollArea,
+    Sense, Stroke, StrokeKind, TextStyle, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo,
+    pos2, vec2,
 };
 use image::{DynamicImage, ImageFormat, RgbImage};
 
@@ -26,11 +25,7 @@ const BAR: f32 = 12.0;
 const MOST_COLUMNS: usize = 6;
 const MOST_ROWS: f32 = 5.0;
 /// Height of the window without the pictures.
-const FRAME: f32 = 160.0;
-/// Height of a line of the sentence about the example under the mouse, which takes two lines in a narrow
-/// dialog, and the space around it.
-const LINE: f32 = 20.0;
-const AROUND: Vec2 = vec2(12.0, 8.0);
+const FRAME: f32 = 120.0;
 /// Number of pictures that are decoded in one frame of the window: more would be felt.
 const DECODED_AT_ONCE: usize = 2;
 
@@ -56,12 +51,20 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
     ui.set_width(pictures_width + bar);
     let tabs: Vec<_> =
         groups().map(|it| (it, it.title(), "Show the examples of this group")).collect();
-    let chosen = widgets::tabs(ui, group, &tabs);
-    actions.extend(chosen.map(|it| ShellAction::OpenDialog(Dialog::Examples(it))));
+    let chosen = ui.horizontal(|ui| {
+        let chosen = widgets::tabs(ui, group, &tabs);
+        if columns > 3 {
+            let right = Layout::right_to_left(Align::Center);
+            ui.with_layout(right, |ui| {
+                ui.weak("Point at a picture to see it move, click to open it")
+            });
+        }
+        chosen
+    });
+    actions.extend(chosen.inner.map(|it| ShellAction::OpenDialog(Dialog::Examples(it))));
     ui.add_space(4.0);
     let mut pictures = Pictures::kept(ui);
     pictures.decode_some(ui, &examples);
-    let mut pointed = None;
     let area = ScrollArea::vertical().id_salt(group.title());
     let area = area.max_height(height).min_scrolled_height(height);
     area.auto_shrink([false, false]).show(ui, |ui| {
@@ -74,39 +77,11 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
                         actions.push(ShellAction::CloseDialog);
                         actions.push(FileAction::OpenExample(*example));
                     }
-                    if card.hovered() || card.has_focus() {
-                        pointed = Some(*example);
-                    }
                 }
             });
         }
     });
     pictures.keep(ui);
-    ui.add_space(4.0);
-    let lines = if columns > 3 { 1.0 } else { 2.0 };
-    let size = vec2(pictures_width, LINE * lines + 2.0 * AROUND.y);
-    let sentence = ui.allocate_exact_size(size, Sense::hover()).0;
-    say(ui, sentence, pointed);
-}
-
-/// Says in `rect` what the example under the mouse is, or what pictures are for.
-fn say(ui: &mut Ui, rect: Rect, example: Option<Example>) {
-    let mut sentence = LayoutJob::default();
-    let mut add = |text: RichText| {
-        text.append_to(&mut sentence, ui.style(), FontSelection::Default, Align::Center);
-    };
-    match example {
-        Some(example) => {
-            add(RichText::new(format!("{}: ", example.title)).strong());
-            add(RichText::new(example.sentence));
-            add(RichText::new("  Click to open.").weak());
-        }
-        None => add(RichText::new("Point at a picture to see it move, click it to open it.")),
-    }
-    ui.painter().rect_filled(rect, 6.0, ui.visuals().faint_bg_color);
-    let mut inside = ui.new_child(UiBuilder::new().max_rect(rect.shrink2(AROUND)));
-    inside.set_clip_rect(rect.intersect(ui.clip_rect()));
-    inside.add(Label::new(sentence).wrap().selectable(false));
 }
 
 /// Shows an example's picture and title, and plays the picture under the mouse.
@@ -135,7 +110,10 @@ fn card(ui: &mut Ui, example: &Example, size: Vec2, pictures: &mut Pictures) -> 
     let at = pos2(rect.left() + 2.0, rect.bottom() - 0.5 * TITLE + 1.0);
     let font = TextStyle::Body.resolve(ui.style());
     painter.text(at, Align2::LEFT_CENTER, example.title, font, colour);
-    card
+    if card.has_focus() {
+        card.show_tooltip_text(example.sentence);
+    }
+    card.on_hover_text(example.sentence)
 }
 
 /// The decoded pictures of the examples that are in view, by their names.

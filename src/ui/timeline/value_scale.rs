@@ -16,6 +16,10 @@ use crate::ui::widgets::text;
 /// can be written whole.
 const ROOM: f64 = 0.1;
 
+/// Height in points between two lanes, so that the lowest number of one is apart from the highest of
+/// the next.
+const APART: f32 = 8.0;
+
 /// The unit of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum ValueKind {
@@ -91,17 +95,20 @@ impl Lanes {
         if !self.kinds().any(|it| it == kind) {
             return plot;
         }
-        let above = self.kinds().take_while(|it| *it != kind);
+        let above: Vec<ValueKind> = self.kinds().take_while(|it| *it != kind).collect();
         let parts: f32 = self.kinds().map(|it| self.weight(it)).sum();
-        let height = plot.height() / parts;
-        let top = plot.top() + height * above.map(|it| self.weight(it)).sum::<f32>();
+        let gaps = APART * self.kinds().skip(1).count() as f32;
+        let height = (plot.height() - gaps).max(0.0) / parts;
+        let top = plot.top()
+            + height * above.iter().map(|it| self.weight(*it)).sum::<f32>()
+            + APART * above.len() as f32;
         Rect::from_x_y_ranges(plot.x_range(), top..=top + height * self.weight(kind))
     }
 
-    /// Height of a lane, relative to the others: 6 from three curves on, 4 with one.
+    /// Height of a lane, relative to the others: 8 from three curves on, 6 with one.
     fn weight(self, kind: ValueKind) -> f32 {
         const MOST: usize = 3;
-        3.0 + self.0[kind.index()].min(MOST) as f32
+        5.0 + self.0[kind.index()].min(MOST) as f32
     }
 }
 
@@ -286,7 +293,8 @@ pub(in crate::ui::timeline) fn axes(
         let lane = scales.lanes.lane(kind, plot);
         let beside = Rect::from_x_y_ranges(plot.left() - VALUES..=plot.left(), lane.y_range());
         if lane.top() > plot.top() {
-            ui.painter().hline(beside.left()..=plot.right(), lane.top(), line);
+            let y = lane.top() - 0.5 * APART;
+            ui.painter().hline(beside.left()..=plot.right(), y, line);
         }
         let (name, unit) = kind.unit(metres_per_unit);
         let shared = shared_colour(curves, kind);

@@ -25,6 +25,7 @@ const FOLDED_FROM: usize = 4;
 const MOST_ROWS: usize = 12;
 const FOLDED_ROWS: usize = 8;
 
+const ADD_CHILD: &str = "Add a child joint (A, or Ctrl+click in the viewport)";
 const ADD_ROOT: &str = "Add a joint that starts a tree";
 const NONE_SELECTED: &str = "Select a joint first";
 
@@ -295,7 +296,7 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow, folds: &mut Folds) ->
         let white = egui::Color32::WHITE;
         fonts.layout_no_wrap(joint.name.clone(), font.clone(), white).size().x
     });
-    let marks = TRIANGLE + if row.target.is_some() { 44.0 } else { 24.0 };
+    let marks = TRIANGLE + if row.target.is_some() { 68.0 } else { 48.0 };
     let size = vec2(ui.available_width().max(indent + width + marks), ROW);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let triangle = Rect::from_min_size(pos2(rect.left() + indent, rect.top()), vec2(TRIANGLE, ROW));
@@ -334,22 +335,24 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow, folds: &mut Folds) ->
     if let Some((triangle, is_folded)) = triangle {
         widgets::fold_mark(painter, triangle.center(), is_folded, visuals.weak_text_color());
     }
-    let at = pos2(rect.left() + indent + TRIANGLE + 6.0, rect.center().y);
-    let palette = style::palette(ui);
-    let colour = match joint.locked {
-        true => palette.joint,
-        false => palette.upper.mixed(palette.accent, row.influence),
+    let what_poses = match (joint.locked, row.influence > 0.0) {
+        (true, _) => "locked",
+        (false, true) => "IK",
+        (false, false) => "",
     };
-    pose_mark(painter, at, style::colour(colour), row, joint.locked);
+    let small = TextStyle::Small.resolve(ui.style());
+    let at = pos2(rect.right() - 8.0, rect.center().y);
+    painter.text(at, Align2::RIGHT_CENTER, what_poses, small, visuals.weak_text_color());
     let text = match (selected, row.is_found) {
         (true, _) => visuals.strong_text_color(),
         (false, true) => visuals.text_color(),
         (false, false) => visuals.weak_text_color(),
     };
-    painter.text(at + vec2(9.0, 0.0), Align2::LEFT_CENTER, &joint.name, font, text);
+    let at = pos2(rect.left() + indent + TRIANGLE + 2.0, rect.center().y);
+    painter.text(at, Align2::LEFT_CENTER, &joint.name, font, text);
     if let Some(enabled) = row.target {
         let colour = if enabled { style::accent(ui) } else { visuals.weak_text_color() };
-        let centre = pos2(rect.left() + indent + TRIANGLE + width + 30.0, rect.center().y);
+        let centre = pos2(rect.left() + indent + TRIANGLE + width + 14.0, rect.center().y);
         target_mark(painter, centre, colour);
     }
     reveal(ui, session, row, &response);
@@ -368,17 +371,6 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow, folds: &mut Folds) ->
 fn toggles(ui: &Ui, is_folded: bool) -> bool {
     let key = if is_folded { Key::ArrowRight } else { Key::ArrowLeft };
     ui.input(|input| input.key_pressed(key))
-}
-
-/// Paints what poses a joint: a dot for its own angles, a diamond for targets, a ring if it is locked.
-fn pose_mark(painter: &Painter, at: Pos2, colour: Color32, row: &OutlinerRow, is_locked: bool) {
-    if is_locked {
-        painter.circle_stroke(at, 2.5, (1.2, colour));
-    } else if row.influence > 0.0 {
-        painter.add(widgets::diamond(at, 4.0, colour, Stroke::NONE));
-    } else {
-        painter.circle_filled(at, 3.0, colour);
-    }
 }
 
 fn target_mark(painter: &Painter, at: Pos2, colour: Color32) {
@@ -450,20 +442,17 @@ fn respond(
     }
 }
 
-/// Shows the buttons of the title, from right to left.
 fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    ui.spacing_mut().item_spacing.x = 4.0;
+    let (name, tooltip, edit) = match session.skeleton().joints().is_empty() {
+        true => ("Add root", ADD_ROOT, JointEdit::AddRoot),
+        false => ("Add child", ADD_CHILD, JointEdit::AddJoint { tip: None }),
+    };
+    if widgets::button(ui, name, tooltip, None) {
+        actions.push(edit);
+    }
     let more = ui.menu_button("More", |ui| menu(ui, session, actions));
     more.response.on_hover_text("Rename or delete joints, and give them targets");
-    if session.skeleton().joints().is_empty() {
-        if widgets::button(ui, "Add root", ADD_ROOT, None) {
-            actions.push(JointEdit::AddRoot);
-        }
-        return;
-    }
-    let tooltip = "Add a child joint (A, or Ctrl+click in the viewport)";
-    if widgets::button(ui, "Add child", tooltip, None) {
-        actions.push(JointEdit::AddJoint { tip: None });
-    }
 }
 
 /// Shows the items that edit the selected joints.

@@ -217,6 +217,9 @@ impl DopeSheet<'_> {
     fn keys(&self, ui: &Ui, row: DopeSheetRow, rect: Rect, actions: &mut Actions) {
         let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
         let (from, to) = self.scale.range();
+        let playback = self.session.playback();
+        let frame = 1.0 / f64::from(self.session.document().timeline.frame_rate);
+        let is_now = |time: f64| (time - playback.time()).abs() < 0.5 * frame;
         let mut last = f32::NEG_INFINITY;
         let times: Vec<f64> = row.times(self.session, from, to);
         // NaN for a single key, which has no limit then.
@@ -247,6 +250,7 @@ impl DopeSheet<'_> {
             let (size, fill, rim) = if picked {
                 (SIZE + 1.0, style::accent(ui), Stroke::new(1.5, visuals.strong_text_color()))
             } else {
+                let colour = if is_now(time) { visuals.strong_text_color() } else { colour };
                 (plain, colour, Stroke::new(1.0, visuals.extreme_bg_color))
             };
             let size = if hovered { size + 1.0 } else { size.min(room) };
