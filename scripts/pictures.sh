@@ -115,14 +115,14 @@ come_closer() {
         pulled-apart | out-of-reach) part=0.62 ;;
         inside-* | too-few-iterations) part=0.75 ;;
         locked) part=0.9 ;;
-        degenerate) part=0.55 to=(0.3 -0.1 0) ;;
+        degenerate) part=0.42 to=(-0.1 0 0) ;; # four of the five
         snake) part=0.6 to=(0.55 0 0.75) ;;
         walk) part=0.68 to=(0 0 "$(awk "BEGIN { print 1.41 * ($3 - 1) }")") ;; # metres in a second
         human) part=0.88 ;;
         wheel) part=0.9 ;;
         tadpoles) part=0.8 to=(-0.04 0 0.05) ;;
         reaching-down) part=0.8 ;;
-        looking-at-the-hand) part=1.25 to=(0 -0.2 0) ;;
+        looking-at-the-hand) part=1.35 to=(0 -0.24 0) ;;
     esac
     python3 - "$2" "$part" "${to[@]}" <<'END'
 import json, sys

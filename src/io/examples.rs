@@ -93,22 +93,20 @@ impl Example {
             "two-targets", "Two targets on a Y" =>
                 "A tree with two branches, each with a target of its own.";
             "human", "Human" =>
-                "A figure whose hands and feet stay at their targets while its pelvis is dragged, and \
-                 whose head looks at a point.";
+                "Hands and feet stay at their targets while the pelvis is dragged, and the head looks at \
+                 a point.";
             "walk", "Walk" =>
-                "A figure that walks: its feet stand at their targets while the pelvis moves on, \
-                 and its arms swing by FK.";
+                "Feet stand at their targets while the pelvis moves on, and the arms swing by FK.";
             "reaching-down", "Reaching down" =>
-                "A figure that squats to lift something from the floor: only its hands with their \
-                 rotations, its gaze and its balance are given, and its feet stay.";
+                "A squat to the floor: only the hands with their rotations, the gaze and the balance are \
+                 given.";
             "looking-at-the-hand", "Looking at the hand" =>
-                "A figure whose neck and head turn to its hand, wherever it goes; press Space to \
-                 stop, and drag it.";
+                "Neck and head turn to the hand, wherever it goes; press Space to stop, and drag it.";
             "wheel", "Two hands on a wheel" =>
                 "A figure whose hands hold a wheel that turns: their targets are on the wheel.";
             "candy-wrapper", "Candy wrapper" =>
-                "A forearm that is twisted by 180°, with its skin blended in three ways: watch the \
-                 area of its middle.";
+                "A forearm that is twisted by 180°, its skin blended in three ways: watch the area of \
+                 the middle.";
             "table", "Table" => "An arm whose hand rests on a table while its shoulder moves.";
             "snake", "Snake" =>
                 "Drag the circle at the head across the floor: 24 joints follow its path.";
@@ -118,13 +116,13 @@ impl Example {
             "ten-joints", "Ten-joint chain" =>
                 "A chain with one target, to watch the solvers at work.";
             "jumping-chain", "Jumping chain" =>
-                "A chain that follows its target smoothly, and as a thin figure what each frame \
-                 would do by itself: it jumps.";
+                "A chain follows its target smoothly; the thin figure shows what each frame would do by \
+                 itself: it jumps.";
             "keyframes", "Keyframes" =>
                 "An arm whose hand goes along a spline through six keys.";
             "degenerate", "Degenerate cases" =>
-                "Cases that break careless solvers: a bone without length, a target at the root, a \
-                 straight chain, targets out of reach, all of it in a mirror.";
+                "What breaks careless solvers: a bone without length, a target at the root, a straight \
+                 chain, a mirror.";
         }
         WhyNot in "why/" {
             "out-of-reach", "Out of reach" =>

@@ -2,10 +2,11 @@
 
 use std::collections::HashMap;
 
+use egui::text::LayoutJob;
 use egui::{
-    Align, Align2, Color32, ColorImage, CornerRadius, Id, Layout, Rect, Response, Role, ScrollArea,
-    Sense, Stroke, StrokeKind, TextStyle, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo,
-    pos2, vec2,
+    Align, Align2, Color32, ColorImage, CornerRadius, Id, Label, Layout, Rect, Response, Role,
+    ScrollArea, Sense, Stroke, StrokeKind, TextStyle, TextureHandle, TextureOptions, Ui, UiBuilder,
+    Vec2, WidgetInfo, pos2, vec2,
 };
 use image::{DynamicImage, ImageFormat, RgbImage};
 
@@ -17,15 +18,17 @@ use crate::ui::{style, widgets};
 /// Least and greatest width of a picture in points, and its height as a part of that.
 const WIDTHS: [f32; 2] = [192.0, 240.0];
 const HEIGHT: f32 = 0.625;
-/// Height of the title below a picture.
+/// Height of the title below a picture, and below that of the sentence about the picture.
 const TITLE: f32 = 24.0;
+const SENTENCE: f32 = 42.0;
+const LINES: usize = 3;
 const GAP: f32 = 12.0;
 /// Room for the bar of the area that scrolls.
 const BAR: f32 = 12.0;
 const MOST_COLUMNS: usize = 6;
 const MOST_ROWS: f32 = 5.0;
 /// Height of the window without the pictures.
-const FRAME: f32 = 120.0;
+const FRAME: f32 = 104.0;
 /// Number of pictures that are decoded in one frame of the window: more would be felt.
 const DECODED_AT_ONCE: usize = 2;
 
@@ -40,7 +43,7 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
     let picture = vec2(width, (HEIGHT * width).round());
     let pictures_width = columns as f32 * (width + GAP) - GAP;
     let examples: Vec<Example> = Example::of(group).collect();
-    let row = picture.y + TITLE + GAP;
+    let row = picture.y + TITLE + SENTENCE + GAP;
     let most_rows = ((window.y - FRAME) / row).floor().clamp(1.0, MOST_ROWS) as usize;
     // The page keeps its size while the groups change.
     let groups = || ExampleGroup::ALL.into_iter();
@@ -86,7 +89,7 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
 
 /// Shows an example's picture and title, and plays the picture under the mouse.
 fn card(ui: &mut Ui, example: &Example, size: Vec2, pictures: &mut Pictures) -> Response {
-    let (rect, card) = ui.allocate_exact_size(size + vec2(0.0, TITLE), Sense::click());
+    let (rect, card) = ui.allocate_exact_size(size + vec2(0.0, TITLE + SENTENCE), Sense::click());
     card.widget_info(|| WidgetInfo::labeled(Role::Button, true, example.title));
     if !ui.is_rect_visible(rect) {
         return card;
@@ -107,13 +110,24 @@ fn card(ui: &mut Ui, example: &Example, size: Vec2, pictures: &mut Pictures) -> 
     };
     painter.rect_stroke(picture, rounding, edge, StrokeKind::Inside);
     let colour = if is_chosen { visuals.strong_text_color() } else { visuals.text_color() };
-    let at = pos2(rect.left() + 2.0, rect.bottom() - 0.5 * TITLE + 1.0);
+    let at = pos2(rect.left() + 2.0, picture.bottom() + 0.5 * TITLE + 1.0);
     let font = TextStyle::Body.resolve(ui.style());
     painter.text(at, Align2::LEFT_CENTER, example.title, font, colour);
-    if card.has_focus() {
-        card.show_tooltip_text(example.sentence);
-    }
-    card.on_hover_text(example.sentence)
+    let below = rect.with_min_y(picture.bottom() + TITLE - 1.0);
+    say(ui, below.shrink2(vec2(2.0, 0.0)), example.sentence, is_chosen);
+    card
+}
+
+/// Says what an example shows, in as many lines as there is room for.
+fn say(ui: &mut Ui, rect: Rect, sentence: &str, is_chosen: bool) {
+    let visuals = ui.visuals();
+    let colour = if is_chosen { visuals.text_color() } else { visuals.weak_text_color() };
+    let font = TextStyle::Small.resolve(ui.style());
+    let mut job = LayoutJob::simple(sentence.to_owned(), font, colour, rect.width());
+    job.wrap.max_rows = LINES;
+    let galley = ui.painter().layout_job(job);
+    let builder = UiBuilder::new().max_rect(rect).layout(Layout::top_down(Align::Min));
+    ui.new_child(builder).add(Label::new(galley).selectable(false));
 }
 
 /// The decoded pictures of the examples that are in view, by their names.

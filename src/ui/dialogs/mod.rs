@@ -10,8 +10,8 @@ mod skeleton;
 use std::mem::discriminant;
 
 use egui::{
-    Align2, Color32, Frame, Grid, Id, Modal, Pos2, Rect, Role, Shadow, Stroke, Ui, UiBuilder,
-    WidgetInfo, Window, pos2, vec2,
+    Align2, Color32, Frame, Grid, Id, Modal, Pos2, Rect, Role, Shadow, Stroke, TextStyle, Ui,
+    UiBuilder, WidgetInfo, Window, pos2, vec2,
 };
 
 use super::frame_times::Machine;
@@ -145,7 +145,13 @@ fn modal(
     let id = Id::unique(("dialog", title.to_owned()));
     let area = Modal::default_area(id).fade_in(false);
     let modal = Modal::new(id).area(area).frame(frame).backdrop_color(backdrop);
-    modal.show(ui.ctx(), |ui| titled(ui, title, has_close, contents)).inner
+    let shown = modal.show(ui.ctx(), |ui| {
+        if is_page && let Some(heading) = ui.style_mut().text_styles.get_mut(&TextStyle::Heading) {
+            heading.size *= 1.5;
+        }
+        titled(ui, title, has_close, contents)
+    });
+    shown.inner
 }
 
 /// Shows a title above `contents`, with a cross at its right if `has_close`. Returns whether the cross
