@@ -1,6 +1,6 @@
 // Sphere of all directions of the Pointer, coloured by the twist reference's gain.
 
-const RIM_OPACITY = 0.3;
+const RIM_OPACITY = 0.24;
 const NEAR_OPACITY = 0.45; // as a multiple of the far side's: what is inside is seen
 const LINE_WIDTH = 1.3; // points
 const LINE_OPACITY = 0.5;

@@ -192,7 +192,7 @@ impl Palette {
 }
 
 fn ramp(hex: [u32; Palette::GAINS]) -> [Colour; Palette::GAINS] {
-    const OPACITY: [f32; Palette::GAINS] = [0.03, 0.12, 0.22, 0.34, 0.46];
+    const OPACITY: [f32; Palette::GAINS] = [0.03, 0.1, 0.19, 0.29, 0.4];
     std::array::from_fn(|step| Colour::rgb(hex[step]).with_opacity(OPACITY[step]))
 }
 

@@ -35,10 +35,11 @@ pub(super) fn add_guides(
     }
 }
 
+/// Radius of the ball where the Pointer meets the globe of gains, as a fraction of the globe's.
+const BALL: f32 = 0.014;
+
 /// Adds the globe of gains, with a ball in the colour of the present gain where the Pointer meets it.
 fn add_globe(scene: &mut Scene, limb: &LimbFrames) {
-    /// Radius of the ball, as a fraction of the globe's.
-    const BALL: f32 = 0.022;
     let (centre, radius) = (limb.origin(LimbPart::Root), limb.limits.outer);
     let axes = Mat3::from(limb.root.matrix3);
     let reference = limb.posed.ik.reference;
@@ -77,7 +78,10 @@ fn add_pointer_and_limits(scene: &mut Scene, limb: &LimbFrames, display: Display
         let colour = palette.guide.mixed(palette.sky_bottom, POINTER_FADED);
         scene.guide_solids.push(Solid { transform, shape, colour, winding: None });
         let tip = transform.transform_point3(Vec3::X * shape.length);
-        let label = Label::new(tip, shape.tip_radius, LabelSide::Below, palette.text);
+        // The ball is about where the Pointer ends.
+        let has_ball = display.shows(Overlay::SingularityGlobe);
+        let radius = if has_ball { BALL * limb.limits.outer } else { shape.tip_radius };
+        let label = Label::new(tip, radius, LabelSide::Below, palette.text);
         scene.add_label(label, format_args!("Pointer"));
     }
     for (overlay, part, radius) in [

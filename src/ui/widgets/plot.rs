@@ -1,7 +1,8 @@
 //! Settings shared by all plots, and a bar that shows a scale of colours.
 
 use egui::{
-    Align2, AsIdSalt, Color32, FontId, Rangef, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2,
+    Align2, AsIdSalt, Color32, FontId, Rangef, Rect, Role, Sense, StrokeKind, Ui, WidgetInfo, pos2,
+    vec2,
 };
 use egui_plot::{AxisHints, GridMark, Plot, PlotBounds, PlotUi};
 
@@ -66,6 +67,9 @@ pub(in crate::ui) fn colour_bar(
         let part = Rect::from_x_y_ranges(left..=right, bar.y_range());
         painter.rect_filled(part, 0.0, colour(0.5 * (from + to)));
     }
+    // Its colours may end in that of the ground.
+    let edge = ui.visuals().widgets.noninteractive.bg_stroke;
+    painter.rect_stroke(bar, 0.0, edge, StrokeKind::Outside);
     let font = FontId::proportional(12.0);
     for (place, text) in marks {
         let at = pos2(bar.left() + bar.width() * place, bar.bottom() + 4.0);

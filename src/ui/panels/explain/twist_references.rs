@@ -33,14 +33,17 @@ pub(in crate::ui) fn globe_legend(ui: &mut Ui, middle: &str) {
     ui.label(format!("{} swing", capital(middle)));
     let summary = "Gain: elbow degrees per degree of the Pointer, 0 to 8 and more";
     let (palette, end) = (style::palette(ui), Palette::MAX_GAIN.ln_1p());
+    // As clear where the globe is clear.
+    let most = palette.gain(Palette::MAX_GAIN).channels()[3];
     let colour = |place: f32| {
-        let gain = (place * end).exp_m1();
-        style::colour(palette.gain(gain).with_opacity(1.0))
+        let colour = palette.gain((place * end).exp_m1());
+        style::colour(colour.with_opacity(colour.channels()[3] / most))
     };
     let gains = [(0.0, "0°"), (1.0, "1°"), (2.0, "2°"), (5.0, "5°"), (Palette::MAX_GAIN, "8°+")];
     let marks = gains.map(|(gain, text)| (f32::ln_1p(gain) / end, text));
     widgets::colour_bar(ui, summary, colour, &marks);
     ui.weak("for each 1° the Pointer turns");
+    ui.weak(format!("Singular: the {middle} spins"));
 }
 
 fn table(ui: &mut Ui, limb: &ShownLimb, path: &TransportPath, actions: &mut Actions) {
