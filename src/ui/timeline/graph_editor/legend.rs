@@ -15,7 +15,7 @@ use crate::ui::labels;
 use crate::ui::timeline::context_menu;
 use crate::ui::timeline::rows::{self, ROW, TimelineAreas, VALUES};
 use crate::ui::timeline::value_scale::{Lanes, ValueKind};
-use crate::ui::widgets::AXES;
+use crate::ui::widgets::{AXES, text};
 
 /// Width in points of one colour beside a name, and of a letter x, y or z in its colour.
 const SWATCH: f32 = 10.0;
@@ -98,7 +98,8 @@ fn list(
             joint_name(ui, session, joint, ruler, actions);
         }
         above = joint;
-        channel_name(ui, session, entry, ruler, actions);
+        let indent = if has_headings && joint.is_some() { 18.0 } else { 10.0 };
+        channel_name(ui, session, entry, indent, ruler, actions);
     }
 }
 
@@ -132,6 +133,7 @@ fn channel_name(
     ui: &mut Ui,
     session: &Session,
     entry: &LegendEntry,
+    indent: f32,
     ruler: &Response,
     actions: &mut Actions,
 ) {
@@ -140,33 +142,38 @@ fn channel_name(
     let is_selected = session.selection().channels().contains(channel);
     let id = ("timeline curve", *channel);
     let (rect, response) = item(ui, id, is_selected, &format!("Curve of {full}"));
-    let indent = if session.document().joint_of(*channel).is_some() { 18.0 } else { 10.0 };
-    let y = rect.center().y;
-    let has_axes = colours.len() == AXES.len();
-    let swatch = if has_axes { LETTER } else { SWATCH };
-    for (place, colour) in colours.iter().enumerate() {
-        let x = rect.left() + indent + swatch * place as f32;
-        let colour = if *is_drawn { *colour } else { colour.gamma_multiply(0.35) };
-        if has_axes {
-            let font = TextStyle::Body.resolve(ui.style());
-            ui.painter().text(pos2(x, y), Align2::LEFT_CENTER, AXES[place], font, colour);
-        } else {
-            let square = Rect::from_center_size(pos2(x + 0.5 * swatch, y), Vec2::splat(SQUARE));
-            ui.painter().rect_filled(square, 2.0, colour);
-        }
-    }
-    let left = rect.left() + indent + swatch * colours.len() as f32 - 5.0;
-    let beside = Rect::from_min_max(pos2(left, rect.top()), rect.max);
     let colour = match (is_selected || response.hovered(), is_drawn) {
         (true, _) => ui.visuals().strong_text_color(),
         (false, true) => ui.visuals().text_color(),
         (false, false) => ui.visuals().weak_text_color(),
     };
-    rows::line(ui, beside, &labels::channel_of_joint(*channel), colour);
+    let (y, font) = (rect.center().y, TextStyle::Body.resolve(ui.style()));
     let metres = session.document().metres_per_unit();
-    let (_, unit) = ValueKind::of(*channel).unit(metres);
-    let (font, weak) = (TextStyle::Body.resolve(ui.style()), ui.visuals().weak_text_color());
-    ui.painter().text(pos2(rect.right() - 4.0, y), Align2::RIGHT_CENTER, unit, font, weak);
+    // The numbers beside it have the sign of degrees.
+    let unit = match ValueKind::of(*channel) {
+        ValueKind::Angle => "",
+        kind => kind.unit(metres).1,
+    };
+    let (right, weak) = (pos2(rect.right() - 4.0, y), ui.visuals().weak_text_color());
+    let unit = ui.painter().text(right, Align2::RIGHT_CENTER, unit, font.clone(), weak);
+    let has_axes = colours.len() == AXES.len();
+    let swatch = if has_axes { LETTER } else { SWATCH };
+    let name = text::capitalized(&labels::channel_of_joint(*channel));
+    let width = ui.painter().layout_no_wrap(name.clone(), font.clone(), colour).size().x;
+    let most = unit.left() - 8.0 - swatch * colours.len() as f32;
+    let beside = rect.with_min_x(rect.left() + indent - 10.0).with_max_x(most + 4.0);
+    rows::line(ui, beside, &name, colour);
+    let left = (rect.left() + indent + width + 6.0).min(most);
+    for (place, colour) in colours.iter().enumerate() {
+        let x = left + swatch * place as f32;
+        let colour = if *is_drawn { *colour } else { colour.gamma_multiply(0.35) };
+        if has_axes {
+            ui.painter().text(pos2(x, y), Align2::LEFT_CENTER, AXES[place], font.clone(), colour);
+        } else {
+            let square = Rect::from_center_size(pos2(x + 0.5 * swatch, y), Vec2::splat(SQUARE));
+            ui.painter().rect_filled(square, 2.0, colour);
+        }
+    }
     if response.clicked() {
         ruler.request_focus();
         let channels = rows::after_click(ui, session.selection().channels(), *channel);
