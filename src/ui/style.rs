@@ -67,7 +67,7 @@ pub fn install(ctx: &Context) {
             spacing.icon_width = 16.0;
             spacing.menu_margin = egui::Margin::same(6);
             // Otherwise scroll bars cover the ends of texts.
-            spacing.scroll.floating_allocated_width = 6.0;
+            spacing.scroll.floating_allocated_width = 10.0;
             // Seen also while the mouse is elsewhere, but faintly: panels show that they scroll.
             spacing.scroll.dormant_handle_opacity = 0.2;
             spacing.scroll.active_handle_opacity = 0.35;

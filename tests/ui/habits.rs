@@ -192,7 +192,7 @@ fn the_window_names_the_document_and_marks_unsaved_changes() {
 #[test]
 fn ten_points_on_a_rail_move_a_figure_by_less_than_an_eighth_of_its_size() {
     let mut bench = human(LARGE);
-    bench.toggle(&["Translation"]);
+    bench.toggle(&["Skeleton", "Translation"]);
     bench.reveal(Role::Slider, "Skeleton y");
     let rail = bench.rect(Role::Slider, "Skeleton y").center();
     bench.drag_and_drop(LEFT, rail, rail + vec2(10.0, 0.0));

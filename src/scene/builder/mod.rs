@@ -69,7 +69,8 @@ impl SceneBuilder {
         let ground_reach = limb.map_or(reach, |limb| reach.max(limb.limits.outer));
         scene.planes = Planes::around(centre, ground_reach, cell, display);
         if display.shows(Overlay::Axes) {
-            add_axes(scene, reach);
+            let has_body = display.shows(Overlay::Skin) && document.rig.skin.is_some();
+            add_axes(scene, reach, has_body);
         }
         skeleton::add(scene, posed, overlays, &mut self.scratch);
         scene.planes.clear(self.scratch.lowest(), reach);
@@ -86,15 +87,16 @@ impl SceneBuilder {
 }
 
 /// Adds lines along the world's axes, which fade out a little outside the rig. Arrowheads belong to
-/// handles.
-fn add_axes(scene: &mut Scene, reach: f32) {
+/// handles. A body that stands on the floor has no y axis, which would look like a rod that holds it.
+fn add_axes(scene: &mut Scene, reach: f32, has_body: bool) {
     /// Length of an axis as a multiple of the rig's reach.
     const LENGTH: f32 = 1.1;
     /// Number of lines of an axis, which get fainter.
     const STEPS: u8 = 12;
     /// Opacities at the origin of the positive and the negative half.
     const HALVES: [(f32, f32); 2] = [(1.0, 0.75), (-1.0, 0.25)];
-    for (axis, colour) in Vec3::AXES.into_iter().zip(scene.palette.axes) {
+    let axes = Vec3::AXES.into_iter().zip(scene.palette.axes);
+    for (axis, colour) in axes.filter(|(axis, _)| !has_body || *axis != Vec3::Y) {
         // No y axis below the floor.
         let halves = HALVES.into_iter().filter(|(sign, _)| *sign > 0.0 || axis != Vec3::Y);
         for (sign, opacity) in halves {

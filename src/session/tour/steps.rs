@@ -412,7 +412,7 @@ static STEPS: [TourStep; 13] = [
         title: "A figure of your own",
         scene: include_str!("../../../assets/human.json"),
         tab: None,
-        section: Some("Translation"),
+        section: Some("Skeleton/Translation"),
         select: Some("pelvis"),
         text: "Each hand and each foot of this figure has a target in the world. Every limb is such \
             an arm: a knee has its triangle (step 3) and its circle (step 4), and a foot stays on \

@@ -42,8 +42,8 @@ fn properties(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             skeleton::ui(ui, session, actions);
         }
     }
-    guides(ui, session, limb.is_some(), actions);
     if let Some(limb) = limb {
+        guides(ui, session, true, actions);
         limb::more(ui, limb, actions);
         skeleton::skin_section(ui, session, actions);
         skeleton::selected(ui, session, actions);
@@ -52,6 +52,9 @@ fn properties(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let display: Vec<_> = Overlay::SURROUNDINGS.into_iter().chain(bodies).collect();
     widgets::folded_section(ui, "Display", |ui| {
         widgets::check_boxes(ui, session, 3, &display, None, actions);
+        if limb.is_none() {
+            guides(ui, session, false, actions);
+        }
     });
     resets(ui, actions);
     ui.add_space(8.0);
@@ -77,7 +80,7 @@ fn guides(ui: &mut Ui, session: &Session, is_limb: bool, actions: &mut Actions) 
             widgets::check_boxes(ui, session, 2, &Overlay::GUIDES, None, actions);
         });
     } else {
-        widgets::named_folded_section(ui, "guides of a figure", "Guides", |ui| {
+        widgets::named_section(ui, "guides of a figure", "Guides", |ui| {
             widgets::check_boxes(ui, session, 2, &FIGURE_GUIDES, None, actions);
         });
     }

@@ -44,10 +44,13 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         balance::ui(ui, session, actions);
     });
     skin::section(ui, session, actions);
-    widgets::folded_section(ui, "Translation", |ui| place(ui, session, actions));
     let has_path = !session.rig().follow_paths.is_empty();
-    let id = if has_path { "Path" } else { "no path" };
-    widgets::named_section_with(ui, id, "Path", has_path, |_| (), |ui| path(ui, session, actions));
+    let id = if has_path { "Skeleton with a path" } else { "Skeleton" };
+    let contents = |ui: &mut Ui| {
+        widgets::folded_section(ui, "Translation", |ui| place(ui, session, actions));
+        widgets::section(ui, "Path", |ui| path(ui, session, actions));
+    };
+    widgets::named_section_with(ui, id, "Skeleton", has_path, |_| (), contents);
 }
 
 /// Shows the switch that lets the body follow limb targets, for a figure with such a body.

@@ -21,9 +21,8 @@ const TRIANGLE: f32 = 14.0;
 /// Number of children from which a joint that has a parent is folded at first: fingers, for example.
 const FOLDED_FROM: usize = 4;
 /// Number of joints up to which a figure is shown whole at first, and number of rows to which a
-/// larger one is folded, so that the properties below need not be scrolled; fewer in a low window.
+/// larger one is folded; fewer in a low window.
 const MOST_ROWS: usize = 12;
-const FOLDED_ROWS: usize = 8;
 
 const ADD_CHILD: &str = "Add a child joint (A, or Ctrl+click in the viewport)";
 const ADD_ROOT: &str = "Add a joint that starts a tree";
@@ -41,7 +40,7 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
     let whole = AROUND + ROW * session.skeleton().joints().len() as f32;
     let is_whole = whole <= HEIGHT.min(first);
     let most_rows = if is_whole { MOST_ROWS } else { ((first - AROUND) / ROW) as usize };
-    let (deepest, rows) = seen_at_first(session.skeleton(), most_rows.min(FOLDED_ROWS));
+    let (deepest, rows) = seen_at_first(session.skeleton(), most_rows.min(MOST_ROWS));
     let open = frame.inner_margin(Margin::symmetric(0, 4));
     let panel = match state.is_open() {
         true if is_whole => {

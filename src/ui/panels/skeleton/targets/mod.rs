@@ -29,7 +29,7 @@ pub(in crate::ui) fn may_be_person(session: &Session) -> bool {
 }
 
 /// Distance between the rows of the list, in points.
-const BETWEEN: f32 = 2.0;
+const BETWEEN: f32 = 0.0;
 
 /// Shows the list of targets.
 pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Actions) {
