@@ -218,7 +218,7 @@ impl DopeSheet<'_> {
         let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
         let (from, to) = self.scale.range();
         let playback = self.session.playback();
-        let frame = 1.0 / f64::from(self.session.document().timeline.frame_rate);
+        let frame = 1.0 / self.session.document().timeline.frame_rate;
         let is_now = |time: f64| (time - playback.time()).abs() < 0.5 * frame;
         let mut last = f32::NEG_INFINITY;
         let times: Vec<f64> = row.times(self.session, from, to);
