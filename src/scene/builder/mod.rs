@@ -111,7 +111,7 @@ fn add_axes(scene: &mut Scene, reach: f32, has_body: bool) {
 }
 
 /// Adds the trail of the hand or the selected joint, with a dot for every frame, a ball for every
-/// key, and arrowheads between keys. What is past at a time in seconds is grey, as onion skins of the
+/// key, arrowheads between keys, and a line below it on the floor. What is past at a time in seconds is grey, as onion skins of the
 /// past are; what is far is faint.
 fn add_trail(scene: &mut Scene, trail: &Trail, now: f64, reach: f32) {
     // Radii of a key, of a dot and of the tube between two dots, as fractions of the rig's reach.
@@ -120,6 +120,8 @@ fn add_trail(scene: &mut Scene, trail: &Trail, now: f64, reach: f32) {
     const TUBE_RADIUS: f32 = 0.002;
     // Part of the sky in the colour of the farthest point.
     const FADED: f32 = 0.6;
+    // Opacity of the line on the floor below the trail, from which one sees where the trail is.
+    const BELOW: f32 = 0.25;
     let palette = scene.palette;
     let view = scene.camera.projection(1.0);
     let depth = |at: Vec3| view.forward.dot(at - view.eye);
@@ -131,10 +133,15 @@ fn add_trail(scene: &mut Scene, trail: &Trail, now: f64, reach: f32) {
         let part = if far > near { (depth(at) - near) / (far - near) } else { 0.0 };
         palette.trail(time < now).mixed(palette.sky_bottom, FADED * part)
     };
+    let below = palette.text.with_opacity(BELOW);
     let [key, dot, tube] = [KEY_RADIUS, DOT_RADIUS, TUBE_RADIUS].map(|part| part * reach);
     for ends in trail.points.windows(2).filter(|ends| ends[0].1 != ends[1].1) {
         let [(time, from), (_, to)] = [ends[0], ends[1]];
         scene.add_guide_solid(from, to, tube, tube, colour(time, from));
+        if scene.planes.ground && from.y.min(to.y) > 0.0 {
+            let [from, to] = [from, to].map(|at| at.with_y(0.0));
+            scene.lines.push(Line { from, to, colour: below, dashed: false });
+        }
     }
     let dots = trail.points.iter();
     let dots = dots.map(|(time, at)| Ball { centre: *at, radius: dot, colour: colour(*time, *at) });
