@@ -254,13 +254,18 @@ impl Target {
     }
 
     /// The ends of the line along which the joint aims, in the world, for a pose of the skeleton; `None`
-    /// without an aim. It starts at about two thirds of the bone: the base of a head is its neck, and
+    /// without an aim. It starts in front of two thirds of the bone: the base of a head is its neck, and
     /// its eyes are there.
     pub fn aim_line_in_world(&self, pose: &Skeleton) -> Option<[Vec3; 2]> {
         const EYES: f32 = 0.65;
+        /// Distance of the eyes from the bone, as a fraction of its length.
+        const IN_FRONT: f32 = 0.5;
         let point = self.aim_point_in_world(pose)?;
         let joint = pose.joint(self.joint).map(|_| self.joint)?;
-        Some([pose.base(joint).lerp(pose.tip(joint), EYES), point])
+        let (base, tip) = (pose.base(joint), pose.tip(joint));
+        let middle = base.lerp(tip, EYES);
+        let out = (point - middle).clamp_length_max(IN_FRONT * base.distance(tip));
+        Some([middle + out, point])
     }
 
     /// The point, in [`Target::present_space`], that is as far from the joint as the point of the aim

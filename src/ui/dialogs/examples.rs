@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use egui::text::LayoutJob;
 use egui::{
-    Align, Align2, Color32, ColorImage, CornerRadius, Id, Label, Layout, Rect, Response, Role,
-    ScrollArea, Sense, Stroke, StrokeKind, TextStyle, TextureHandle, TextureOptions, Ui, UiBuilder,
-    Vec2, WidgetInfo, pos2, vec2,
+    Align, Align2, Color32, ColorImage, CornerRadius, FontId, Id, Label, Layout, Rect, Response,
+    Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle, TextureHandle, TextureOptions, Ui,
+    UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
 use image::{DynamicImage, ImageFormat, RgbImage};
 
@@ -20,7 +20,7 @@ const WIDTHS: [f32; 2] = [192.0, 240.0];
 const HEIGHT: f32 = 0.625;
 /// Height of the title below a picture, and below that of the sentence about the picture.
 const TITLE: f32 = 24.0;
-const SENTENCE: f32 = 42.0;
+const SENTENCE: f32 = 46.0;
 const LINES: usize = 3;
 const GAP: f32 = 12.0;
 /// Room for the bar of the area that scrolls.
@@ -121,8 +121,8 @@ fn card(ui: &mut Ui, example: &Example, size: Vec2, pictures: &mut Pictures) -> 
 /// Says what an example shows, in as many lines as there is room for.
 fn say(ui: &mut Ui, rect: Rect, sentence: &str, is_chosen: bool) {
     let visuals = ui.visuals();
-    let colour = if is_chosen { visuals.text_color() } else { visuals.weak_text_color() };
-    let font = TextStyle::Small.resolve(ui.style());
+    let colour = if is_chosen { visuals.strong_text_color() } else { visuals.text_color() };
+    let font = FontId::proportional(12.5);
     let mut job = LayoutJob::simple(sentence.to_owned(), font, colour, rect.width());
     job.wrap.max_rows = LINES;
     let galley = ui.painter().layout_job(job);
