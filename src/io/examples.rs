@@ -62,7 +62,7 @@ impl ExampleGroup {
     /// Name on screen.
     pub fn title(self) -> &'static str {
         match self {
-            Self::Basics => "Basics",
+            Self::Basics => "Scenes",
             Self::WhyNot => "Why not reached",
             Self::InsideSolver => "Inside a solver",
             Self::HardCases => "Hard cases",

@@ -121,7 +121,7 @@ fn add_trail(scene: &mut Scene, trail: &Trail, now: f64, reach: f32) {
     // Part of the sky in the colour of the farthest point.
     const FADED: f32 = 0.6;
     // Opacity of the line on the floor below the trail, from which one sees where the trail is.
-    const BELOW: f32 = 0.25;
+    const BELOW: f32 = 0.3;
     let palette = scene.palette;
     let view = scene.camera.projection(1.0);
     let depth = |at: Vec3| view.forward.dot(at - view.eye);
@@ -133,7 +133,7 @@ fn add_trail(scene: &mut Scene, trail: &Trail, now: f64, reach: f32) {
         let part = if far > near { (depth(at) - near) / (far - near) } else { 0.0 };
         palette.trail(time < now).mixed(palette.sky_bottom, FADED * part)
     };
-    let below = palette.text.with_opacity(BELOW);
+    let below = palette.trail(false).with_opacity(BELOW);
     let [key, dot, tube] = [KEY_RADIUS, DOT_RADIUS, TUBE_RADIUS].map(|part| part * reach);
     for ends in trail.points.windows(2).filter(|ends| ends[0].1 != ends[1].1) {
         let [(time, from), (_, to)] = [ends[0], ends[1]];

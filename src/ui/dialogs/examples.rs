@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use egui::text::LayoutJob;
+use egui::text::{LayoutJob, TextFormat};
 use egui::{
     Align, Align2, Color32, ColorImage, CornerRadius, FontId, Id, Label, Layout, Rect, Response,
     Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle, TextureHandle, TextureOptions, Ui,
@@ -20,8 +20,9 @@ const WIDTHS: [f32; 2] = [192.0, 240.0];
 const HEIGHT: f32 = 0.625;
 /// Height of the title below a picture, and below that of the sentence about the picture.
 const TITLE: f32 = 24.0;
-const SENTENCE: f32 = 46.0;
 const LINES: usize = 3;
+const LINE: f32 = 16.0;
+const SENTENCE: f32 = LINE * LINES as f32;
 const GAP: f32 = 12.0;
 /// Room for the bar of the area that scrolls.
 const BAR: f32 = 12.0;
@@ -109,7 +110,7 @@ fn card(ui: &mut Ui, example: &Example, size: Vec2, pictures: &mut Pictures) -> 
         false => visuals.widgets.noninteractive.bg_stroke,
     };
     painter.rect_stroke(picture, rounding, edge, StrokeKind::Inside);
-    let colour = if is_chosen { visuals.strong_text_color() } else { visuals.text_color() };
+    let colour = visuals.strong_text_color();
     let at = pos2(rect.left() + 2.0, picture.bottom() + 0.5 * TITLE + 1.0);
     let font = TextStyle::Body.resolve(ui.style());
     painter.text(at, Align2::LEFT_CENTER, example.title, font, colour);
@@ -121,9 +122,11 @@ fn card(ui: &mut Ui, example: &Example, size: Vec2, pictures: &mut Pictures) -> 
 /// Says what an example shows, in as many lines as there is room for.
 fn say(ui: &mut Ui, rect: Rect, sentence: &str, is_chosen: bool) {
     let visuals = ui.visuals();
-    let colour = if is_chosen { visuals.strong_text_color() } else { visuals.text_color() };
+    let colour = if is_chosen { visuals.text_color() } else { visuals.weak_text_color() };
     let font = FontId::proportional(12.5);
-    let mut job = LayoutJob::simple(sentence.to_owned(), font, colour, rect.width());
+    let format = TextFormat { line_height: Some(LINE), ..TextFormat::simple(font, colour) };
+    let mut job = LayoutJob::single_section(sentence.to_owned(), format);
+    job.wrap.max_width = rect.width();
     job.wrap.max_rows = LINES;
     let galley = ui.painter().layout_job(job);
     let builder = UiBuilder::new().max_rect(rect).layout(Layout::top_down(Align::Min));
