@@ -91,8 +91,8 @@ fn picture(scene: &Scene, side: u32) -> RgbaImage {
     block_on(PictureRenderer::new(&gpu, side, side, 1.0).draw(scene)).expect("drawn")
 }
 
-/// The gains at a place of a picture in pixels: of the far side and of the near one if it is in front of the camera,
-/// each with its part of the opacity; `None` towards the rim, where the globe is denser.
+/// The gains at a place of a picture in pixels: of the far side and of the near one if it is in front
+/// of the camera, each with its part of the opacity; `None` towards the rim, where the globe is denser.
 fn gains(scene: &Scene, at: Vec2, side: u32) -> Option<Vec<(f64, f64)>> {
     const NEAR_OPACITY: f64 = 0.45;
     let globe = scene.globe?;

@@ -52,9 +52,10 @@ fn a_picture_tells_what_its_example_shows_and_opens_it() {
         bench.choose(&["File", "New", "Example…"]);
         bench.move_to(pos2(2.0, 2.0));
         bench.settle();
+        assert!(bench.says("Point at a picture"));
         let picture = bench.rect(Role::Button, "Two targets on a Y");
         bench.move_to(picture.center());
-        bench.wait(1.0);
+        bench.settle();
         assert!(bench.says("A tree with two branches"));
         bench.click_at(picture.center());
         bench.settle();
@@ -82,8 +83,7 @@ fn a_picture_moves_under_the_mouse_alone() {
     bench.settle();
     for (name, moves) in [("Walk", true), ("Human", false)] {
         bench.move_to(bench.rect(Role::Button, name).center());
-        // Until the tooltip is shown.
-        bench.wait(1.0);
+        bench.frame([]);
         let before = bench.harness.render().expect("a picture");
         bench.wait(0.7);
         assert_eq!(bench.harness.render().expect("a picture") != before, moves, "{name}");
