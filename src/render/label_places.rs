@@ -3,6 +3,8 @@ use glam::{Vec2, Vec3};
 use crate::document::Projection;
 use crate::scene::{LabelSide, Scene};
 
+/// Distance from the picture, in points, from which a point outside it has no label.
+const OUTSIDE: f32 = 30.0;
 /// Height of a line in points.
 pub(super) const LINE_HEIGHT: f32 = 15.0;
 /// Across and down, the nearest that a text comes to the middle of a ball, as fractions of the ball's
@@ -21,7 +23,7 @@ const LEAST_RADIUS: f32 = 3.0;
 /// What it costs to cover one of these points, by a limb or by a thin line, and to go a line farther
 /// away. To go to the next side costs 1.
 const COST_OF_LIMB: u32 = 4;
-const COST_OF_THIN: u32 = 2;
+const COST_OF_THIN: u32 = 3;
 const COST_OF_LINE: u32 = 5;
 
 /// Where labels are written, so that none covers another or leaves the picture, nor a limb where
@@ -37,7 +39,8 @@ pub(super) struct LabelPlaces {
 }
 
 impl LabelPlaces {
-    /// The start of each label's baseline in pixels; `None` for a point that cannot be projected.
+    /// The start of each label's baseline in pixels; `None` for a point that is not in the picture or
+    /// near it.
     pub fn pens(&self) -> &[Option<Vec2>] {
         &self.pens
     }
@@ -59,7 +62,9 @@ impl LabelPlaces {
             self.limbs.extend(SeenLimb::all(scene, &projection, size));
         }
         for (label, width) in scene.labels.iter().zip(widths) {
-            let Some(point) = pixel(&projection, label.at, size) else {
+            let near = Vec2::splat(OUTSIDE * scale);
+            let is_seen = |at: &Vec2| at.cmpge(-near).all() && at.cmple(size + near).all();
+            let Some(point) = pixel(&projection, label.at, size).filter(is_seen) else {
                 self.pens.push(None);
                 continue;
             };
@@ -110,7 +115,7 @@ impl Text {
     /// Starts of the baseline, the best first, each with what it costs not to be the best.
     fn places(self, side: LabelSide) -> impl Iterator<Item = (u32, Vec2)> {
         let others = LabelSide::ALL.into_iter().filter(move |other| *other != side);
-        let sides = std::iter::once(side).chain(others);
+        let sides = [side, LabelSide::Under].into_iter().chain(others);
         (0..=MOST_LINES).flat_map(move |lines| {
             (0..).zip(sides.clone()).map(move |(nth, side)| {
                 (COST_OF_LINE * u32::from(lines) + nth, self.pen(side, lines))
@@ -121,7 +126,7 @@ impl Text {
     fn pen(self, side: LabelSide, lines: u8) -> Vec2 {
         let Self { point, away, width, line } = self;
         let across = match side {
-            LabelSide::Over => -0.5 * width,
+            LabelSide::Over | LabelSide::Under => -0.5 * width,
             _ if side.is_left() => -away.x - width,
             _ => away.x,
         };
@@ -271,8 +276,24 @@ mod tests {
             .labels
             .iter()
             .zip(places.pens())
-            .map(|(label, pen)| points(label, pen.expect("before the eye")));
+            .filter_map(|(label, pen)| Some(points(label, (*pen)?)));
         each.fold([0, 0], |sum, each| [sum[0] + each[0], sum[1] + each[1]])
+    }
+
+    #[test]
+    fn a_point_far_outside_the_picture_has_no_label() {
+        let mut scene = Scene::new(&Document::default().at(0.0), &Overlays::default(), Theme::Dark);
+        let projection = scene.camera.projection(SIZE.x / SIZE.y);
+        let label = scene.labels[0];
+        let mut places = LabelPlaces::default();
+        for step in -60_i16..=60 {
+            let along = f32::from(step) * 0.05;
+            scene.labels[0].at = label.at + along * 300.0 * projection.right;
+            let seen = pixel(&projection, scene.labels[0].at, SIZE).expect("before the eye");
+            let outside = (seen - seen.clamp(Vec2::ZERO, SIZE)).abs().max_element();
+            places.place(&scene, std::iter::repeat(40.0), SIZE, 1.0);
+            assert_eq!(places.pens()[0].is_some(), outside <= OUTSIDE, "at {seen}");
+        }
     }
 
     #[test]
@@ -284,6 +305,8 @@ mod tests {
             document.rig.targets[0].home = home;
             let scene = Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark);
             let [chosen, own] = covered(&scene);
+            let unseen = placed(&scene).len().abs_diff(scene.labels.len());
+            assert!(unseen <= 1, "at {angle}: the Pointer alone may end outside the picture");
             assert!(chosen <= own, "at {angle}: {chosen} points over limbs instead of {own}");
             sum = [sum[0] + chosen, sum[1] + own];
         }

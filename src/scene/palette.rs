@@ -62,7 +62,7 @@ impl Palette {
                 grid: Colour::rgb(0x9aa4b4).with_opacity(0.75),
                 wall: Colour::rgb(0x9aa4b4),
                 text: Colour::rgb(0xeef0f4),
-                gains: ramp([0x4f93e3, 0x9a6ad6, 0xd8487c, 0xf76c43, 0xffa83f]),
+                gains: ramp([0x6fb7ff, 0xa98af0, 0xe0609a, 0xf76c43, 0xffa83f]),
                 shadow: 0.7,
             },
             Theme::Light => Self {
@@ -104,11 +104,14 @@ impl Palette {
 
     /// See-through colour of an onion skin: the fainter, the farther it is from the playhead.
     pub(super) fn onion_skin(&self, skin: &OnionSkin) -> Colour {
-        const OPACITY: f32 = 0.3;
-        // Parts of the sky in the grey of the past, and in the accent of the future, which would draw more
-        // attention than the figure.
-        let (plain, faded) = if skin.past { (self.guide, 0.3) } else { (self.accent, 0.2) };
-        plain.mixed(self.sky_bottom, faded).with_opacity(OPACITY * skin.opacity)
+        const OPACITY: f32 = 0.24;
+        // Parts of the sky in the grey of the past, and of the joints' grey in the accent of the future,
+        // which would draw more attention than the figure.
+        let plain = match skin.past {
+            true => self.guide.mixed(self.sky_bottom, 0.1),
+            false => self.accent.mixed(self.joint, 0.25),
+        };
+        plain.with_opacity(OPACITY * skin.opacity)
     }
 
     /// Colour of a motion trail.
@@ -192,7 +195,7 @@ impl Palette {
 }
 
 fn ramp(hex: [u32; Palette::GAINS]) -> [Colour; Palette::GAINS] {
-    const OPACITY: [f32; Palette::GAINS] = [0.03, 0.1, 0.19, 0.29, 0.4];
+    const OPACITY: [f32; Palette::GAINS] = [0.08, 0.12, 0.16, 0.2, 0.25];
     std::array::from_fn(|step| Colour::rgb(hex[step]).with_opacity(OPACITY[step]))
 }
 

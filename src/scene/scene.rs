@@ -15,7 +15,10 @@ use crate::kinematics::skin::SkinPose;
 use crate::rig::Crowd;
 
 /// Ratio of the radius of a singular direction's mark to the radius of the globe.
-const MARK_RADIUS: f32 = 0.026;
+const MARK_RADIUS: f32 = 0.02;
+
+/// The gains whose lines on the globe have a number: those of `LEVELS` in `globe.wgsl`.
+const LEVELS: [u8; 3] = [1, 2, 5];
 
 /// Bytes of the labels of a scene with all guides, more than there are: a longer number then takes no
 /// memory.
@@ -190,7 +193,24 @@ impl Scene {
                 (globe.centre + direction * globe.radius, MARK_RADIUS * globe.radius);
             self.balls.push(Ball { centre, radius, colour: ball });
             let label = Label::new(centre, radius, LabelSide::Above, text);
-            self.add_label(label, format_args!("singular"));
+            self.add_label(label, format_args!("singular: spins"));
+        }
+        self.label_levels(globe);
+    }
+
+    /// Writes the gains of the lines on a globe beside them, at the left as the camera sees them: at the
+    /// right is the label of the singular direction.
+    fn label_levels(&mut self, globe: Globe) {
+        let left = -self.camera.projection(1.0).right;
+        for direction in globe.singular() {
+            let aside = left.reject_from_normalized(direction);
+            let aside = aside.try_normalize().unwrap_or_else(|| direction.any_orthonormal_vector());
+            for gain in LEVELS {
+                let (sin, cos) = globe.angle_of_gain(f32::from(gain)).sin_cos();
+                let at = globe.centre + globe.radius * (cos * direction + sin * aside);
+                let label = Label::new(at, 0.0, LabelSide::AboveLeft, self.palette.text);
+                self.add_label(label, format_args!("{gain}×"));
+            }
         }
     }
 

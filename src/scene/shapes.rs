@@ -269,6 +269,13 @@ impl Globe {
         directions.into_iter().flatten().map(move |it| (axes * it).normalize_or(Vec3::Y))
     }
 
+    /// Angle in radians from a singular direction to the directions with this gain. Of two opposite
+    /// singular directions, the gain is the cotangent of the angle, of one the cotangent of its half.
+    pub(super) fn angle_of_gain(&self, gain: f32) -> f32 {
+        let acot = f32::atan2(1.0, gain);
+        if matches!(self.reference, TwistReference::Stereographic(_)) { 2.0 * acot } else { acot }
+    }
+
     /// True if the globe can be drawn: its centre and radius are finite, and the radius is above 0.
     pub fn has_size(&self) -> bool {
         self.centre.is_finite() && self.radius.is_finite() && self.radius > 0.0
@@ -323,6 +330,8 @@ pub enum LabelSide {
     BelowLeft,
     /// Above, in the middle.
     Over,
+    /// Below, in the middle.
+    Under,
 }
 
 impl LabelSide {

@@ -3,6 +3,7 @@
 use crate::document::{Channel, Overlay, PathKind, Target, TwistReferenceKind};
 use crate::kinematics::skeleton::{Extreme, JointId, LimitEnd, SwingAxis};
 use crate::session::{Grip, Session};
+use crate::ui::widgets::text;
 
 /// Name of the part that a grip moves, such as "pelvis", "the limb of left_hand" or
 /// "the target of left_hand"; empty for other grips.
@@ -75,6 +76,25 @@ pub(in crate::ui) fn channel_of_joint(channel: Channel) -> String {
     }
 }
 
+/// The same in a list of channels of one joint, with a capital: the target of a figure that is one limb
+/// is called *Hand* as beside its sliders.
+pub(in crate::ui) fn channel_alone(session: &Session, channel: Channel) -> String {
+    match channel {
+        Channel::Target(_) if session.rig().sole_limb().is_some() => "Hand".to_owned(),
+        _ => text::capitalized(&channel_of_joint(channel)),
+    }
+}
+
+/// Name and sign of the unit of lengths, in a document with these metres in a unit.
+pub(in crate::ui) fn unit_of_length(metres_per_unit: f32) -> (&'static str, &'static str) {
+    match metres_per_unit {
+        1.0 => ("metres", "m"),
+        0.01 => ("centimetres", "cm"),
+        0.001 => ("millimetres", "mm"),
+        _ => ("units of the scene", "units"),
+    }
+}
+
 /// Formats a number of keys, such as "1 key" or "3 keys".
 pub(in crate::ui) fn count_of_keys(count: usize) -> String {
     match count {
@@ -126,7 +146,7 @@ pub(in crate::ui) fn overlay(overlay: Overlay) -> (&'static str, &'static str) {
         Overlay::Hand => ("Hand", "Show the hand; the forearm winds as it rolls"),
         Overlay::Frames => ("Frames", "Show the axes of Root, Limb and Socket"),
         Overlay::SingularityGlobe => {
-            ("Singularity globe", "Colour the outer limit by how fast the elbow turns")
+            ("Globe", "Colour the outer limit by how fast the elbow turns")
         }
         Overlay::TwistReferences => {
             ("Twist references", "Show the limb with each of the other twist references")

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 use ik_arm::document::{Display, Document, Overlay, SkeletonRig, Skin, Target, Theme, Track};
 use ik_arm::kinematics::skeleton::{Balance, Joint, JointId, Skeleton};
-use ik_arm::scene::{Line, Palette, Scene, Solid};
+use ik_arm::scene::{Line, Palette, Scene, Shadow, Solid};
 use ik_arm::session::{
     DisplayEdit, FileAction, Overlays, PanelTab, PlaybackAction, SelectAction, Session, ViewAction,
 };
@@ -231,6 +231,29 @@ fn lean(document: &mut Document) {
         pelvis.rotation.x += 0.4;
     };
     skeleton.change(JointId::new(0), tilted).expect("a pelvis");
+}
+
+#[test]
+fn a_trail_casts_a_shadow_in_one_piece_from_its_first_point_to_its_last() {
+    for (name, shows) in [("keyframes", true), ("keyframes", false), ("arm", true)] {
+        let mut document = documents::example(name);
+        document.display = document.display.with(Overlay::Shadow, shows);
+        let track = Track::new(&document);
+        let posed = track.at(1.0);
+        let overlays = Overlays::new(&track, &posed);
+        let points: Vec<Vec3> = overlays.trail.points.iter().map(|(_, at)| *at).collect();
+        let scene = Scene::new(&posed, &overlays, Theme::Dark);
+        let is_of_trail = |it: &&Shadow| points.contains(&it.base) && points.contains(&it.tip);
+        let cast: Vec<&Shadow> = scene.shadows.iter().filter(is_of_trail).collect();
+        if !shows || name == "arm" {
+            assert_eq!(cast.len(), 0, "{name}");
+            continue;
+        }
+        assert!((20..=64).contains(&cast.len()), "{}", cast.len());
+        assert!(cast.windows(2).all(|pair| pair[0].tip == pair[1].base));
+        assert_eq!(Some(&cast[0].base), points.first());
+        assert_eq!(Some(&cast[cast.len() - 1].tip), points.last());
+    }
 }
 
 #[test]

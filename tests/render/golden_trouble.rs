@@ -12,7 +12,7 @@ use ik_arm::kinematics::twist::{Stereographic, TwistReference};
 use ik_arm::kinematics::two_bone::Pointer;
 use ik_arm::render::PictureRenderer;
 use ik_arm::rig::TaperedCylinder;
-use ik_arm::scene::{Colour, Globe, Hand, Palette, Scene, Shadow, Solid, hand_mesh};
+use ik_arm::scene::{Colour, Globe, Hand, Label, Palette, Scene, Shadow, Solid, hand_mesh};
 use ik_arm::session::Overlays;
 use image::RgbaImage;
 use pollster::block_on;
@@ -246,8 +246,19 @@ fn every_singular_direction_is_marked_on_the_globe() {
         assert_eq!(marked.globe, Some(globe));
         let places: Vec<_> = directions.iter().map(|way| globe.centre + way * 100.0).collect();
         let balls: Vec<_> = marked.balls[before.0..].iter().map(|ball| ball.centre).collect();
-        let labels: Vec<_> = marked.labels[before.1..].iter().map(|label| label.at).collect();
-        assert_eq!((&balls, &labels), (&places, &places), "{reference:?}");
+        let is_name = |label: &&Label| marked.text(label).starts_with("singular");
+        let labels = marked.labels[before.1..].iter();
+        let (names, numbers): (Vec<&Label>, Vec<&Label>) = labels.partition(is_name);
+        let names: Vec<_> = names.iter().map(|label| label.at).collect();
+        assert_eq!((&balls, &names), (&places, &places), "{reference:?}");
+        assert_eq!(numbers.len(), 3 * places.len(), "{reference:?}");
+        for label in numbers {
+            let way = (label.at - globe.centre).as_dvec3();
+            let shown: f64 = marked.text(label).trim_end_matches('×').parse().expect("a number");
+            assert!((way.length() - 100.0).abs() < 1e-3, "{reference:?}: {way}");
+            let off = gain(reference, way.normalize()) / shown - 1.0;
+            assert!(off.abs() < 1e-4, "{reference:?}: {shown} is off by {off}");
+        }
         assert!(directions.iter().all(|way| gain(reference, way.as_dvec3()) > 1e6));
     }
 }

@@ -149,7 +149,7 @@ fn names_of_the_arm_are_on_a_side_without_limbs() {
             Vec2::new((to - from).dot(right), (to - from).dot(up)).normalize_or_zero()
         };
         for (name, at, limbs) in [
-            ("Root", Vec3::ZERO, vec![pose.elbow]),
+            ("Shoulder", Vec3::ZERO, vec![pose.elbow]),
             ("Elbow", pose.elbow, vec![Vec3::ZERO, pose.hand]),
             ("Hand", pose.hand, vec![pose.elbow]),
         ] {
@@ -175,6 +175,6 @@ fn a_hand_with_handles_has_no_name_and_the_others_keep_theirs() {
         let scene = Scene::new(&document.at(0.0), &overlays, Theme::Dark);
         scene.labels.iter().map(|label| scene.text(label).to_owned()).collect::<Vec<_>>()
     };
-    assert_eq!(names(false), ["Root", "Elbow", "Hand", "Pointer"]);
-    assert_eq!(names(true), ["Root", "Elbow", "Pointer"]);
+    assert_eq!(names(false), ["Shoulder", "Elbow", "Hand", "Pointer"]);
+    assert_eq!(names(true), ["Shoulder", "Elbow", "Pointer"]);
 }

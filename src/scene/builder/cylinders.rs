@@ -186,7 +186,7 @@ impl<'a> CylinderLimb<'a> {
         // The hand goes on beyond the wrist, and the Pointer beyond the hand.
         let (fingers, pointer) = (hand + (hand - elbow), hand + (hand - root));
         let named = [
-            (LimbPart::Root, root, LimbFrames::JOINT_BALL, [elbow, pointer], "Root"),
+            (LimbPart::Root, root, LimbFrames::JOINT_BALL, [elbow, pointer], "Shoulder"),
             (LimbPart::Elbow, elbow, LimbFrames::JOINT_BALL, [root, hand], "Elbow"),
             (LimbPart::Hand, hand, LimbFrames::WRIST_BALL, [elbow, fingers], "Hand"),
         ];

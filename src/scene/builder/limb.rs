@@ -36,7 +36,9 @@ pub(super) fn add_guides(
 }
 
 /// Radius of the ball where the Pointer meets the globe of gains, as a fraction of the globe's.
-const BALL: f32 = 0.014;
+const BALL: f32 = 0.019;
+/// Length and radius of the Pointer's arrowhead, likewise.
+const HEAD: [f32; 2] = [0.036, 0.009];
 
 /// Adds the globe of gains, with a ball in the colour of the present gain where the Pointer meets it.
 fn add_globe(scene: &mut Scene, limb: &LimbFrames) {
@@ -77,10 +79,17 @@ fn add_pointer_and_limits(scene: &mut Scene, limb: &LimbFrames, display: Display
         let (transform, shape) = (limb.world(LimbPart::Pointer), limb.pointer());
         let colour = palette.guide.mixed(palette.sky_bottom, POINTER_FADED);
         scene.guide_solids.push(Solid { transform, shape, colour, winding: None });
-        let tip = transform.transform_point3(Vec3::X * shape.length);
+        let mut tip = transform.transform_point3(Vec3::X * shape.length);
         // The ball is about where the Pointer ends.
         let has_ball = display.shows(Overlay::SingularityGlobe);
         let radius = if has_ball { BALL * limb.limits.outer } else { shape.tip_radius };
+        if !has_ball {
+            let [length, width] = HEAD.map(|part| part * limb.limits.outer);
+            let axis = transform.transform_vector3(Vec3::X);
+            let base = tip;
+            tip += axis * length;
+            scene.add_guide_solid(base, tip, width, 0.0, colour);
+        }
         let label = Label::new(tip, radius, LabelSide::Below, palette.text);
         scene.add_label(label, format_args!("Pointer"));
     }

@@ -13,7 +13,7 @@ mod twist;
 
 use glam::Vec3;
 
-use super::{Ball, Line, Palette, Planes, Scene};
+use super::{Ball, Line, Palette, Planes, Scene, Shadow};
 use crate::document::{Overlay, Posed, Theme};
 use crate::rig::LimbPart;
 use crate::session::{Overlays, ShownLimb, Trail};
@@ -81,6 +81,9 @@ impl SceneBuilder {
             limb::add_guides(scene, &limb, overlays, display);
         }
         add_trail(scene, &overlays.trail, posed.time(), reach);
+        if display.shows(Overlay::Shadow) {
+            add_shadow_of_trail(scene, &overlays.trail, reach);
+        }
         scene.spare_skin_pose = None;
         scene.remove_non_finite();
     }
@@ -111,17 +114,15 @@ fn add_axes(scene: &mut Scene, reach: f32, has_body: bool) {
 }
 
 /// Adds the trail of the hand or the selected joint, with a dot for every frame, a ball for every
-/// key, arrowheads between keys, and a line below it on the floor. What is past at a time in seconds is grey, as onion skins of the
+/// key, and arrowheads between keys. What is past at a time in seconds is grey, as onion skins of the
 /// past are; what is far is faint.
 fn add_trail(scene: &mut Scene, trail: &Trail, now: f64, reach: f32) {
     // Radii of a key, of a dot and of the tube between two dots, as fractions of the rig's reach.
     const KEY_RADIUS: f32 = 0.012;
     const DOT_RADIUS: f32 = 0.0045;
-    const TUBE_RADIUS: f32 = 0.002;
+    const TUBE_RADIUS: f32 = 0.003;
     // Part of the sky in the colour of the farthest point.
     const FADED: f32 = 0.6;
-    // Opacity of the line on the floor below the trail, from which one sees where the trail is.
-    const BELOW: f32 = 0.3;
     let palette = scene.palette;
     let view = scene.camera.projection(1.0);
     let depth = |at: Vec3| view.forward.dot(at - view.eye);
@@ -133,15 +134,10 @@ fn add_trail(scene: &mut Scene, trail: &Trail, now: f64, reach: f32) {
         let part = if far > near { (depth(at) - near) / (far - near) } else { 0.0 };
         palette.trail(time < now).mixed(palette.sky_bottom, FADED * part)
     };
-    let below = palette.trail(false).with_opacity(BELOW);
     let [key, dot, tube] = [KEY_RADIUS, DOT_RADIUS, TUBE_RADIUS].map(|part| part * reach);
     for ends in trail.points.windows(2).filter(|ends| ends[0].1 != ends[1].1) {
         let [(time, from), (_, to)] = [ends[0], ends[1]];
         scene.add_guide_solid(from, to, tube, tube, colour(time, from));
-        if scene.planes.ground && from.y.min(to.y) > 0.0 {
-            let [from, to] = [from, to].map(|at| at.with_y(0.0));
-            scene.lines.push(Line { from, to, colour: below, dashed: false });
-        }
     }
     let dots = trail.points.iter();
     let dots = dots.map(|(time, at)| Ball { centre: *at, radius: dot, colour: colour(*time, *at) });
@@ -151,6 +147,25 @@ fn add_trail(scene: &mut Scene, trail: &Trail, now: f64, reach: f32) {
     scene.balls.extend(keys);
     for keys in trail.keys.windows(2) {
         add_arrowhead(scene, trail, [keys[0], keys[1]], now, reach);
+    }
+}
+
+/// Adds the shadow of a trail, which shows where in depth the trail is.
+fn add_shadow_of_trail(scene: &mut Scene, trail: &Trail, reach: f32) {
+    // Radius of what casts it, as a fraction of the rig's reach: wider than the trail, whose shadow would be
+    // too faint.
+    const RADIUS: f32 = 0.008;
+    // Greatest number of parts, and points of the trail in one of them.
+    const PARTS: usize = 64;
+    const PART: usize = 4;
+    let radius = RADIUS * reach;
+    let points = &trail.points;
+    let part = points.len().div_ceil(PARTS).max(PART);
+    for from in (0..points.len()).step_by(part) {
+        let to = (from + part).min(points.len() - 1);
+        let [base, tip] = [from, to].map(|index| points[index].1);
+        let cast = Shadow { base, base_radius: radius, tip, tip_radius: radius };
+        scene.shadows.extend(cast.above_ground().filter(|_| base != tip));
     }
 }
 

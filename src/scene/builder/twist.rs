@@ -118,6 +118,9 @@ const LEAST_TWIST: f32 = 1e-3;
 /// Part of the sky in the colour of a circle, so that it stays behind the limb.
 const FADED: f32 = 0.5;
 
+/// Distance of the circle's name from the circle, as a part of the limb's length.
+const CLEAR: f32 = 0.015;
+
 /// Adds the circle with spokes to the twist reference's direction and to the elbow, and the arc of
 /// the twist between them. Where FK has a part in the pose, the elbow has no circle; without marks,
 /// and where limits of the upper joint turn the elbow aside, the circle has one spoke, to the
@@ -131,6 +134,14 @@ pub(super) fn add_circle(scene: &mut Scene, limb: &LimbFrames, has_marks: bool) 
     let palette = scene.palette;
     let accent = palette.accent;
     circle.add_arc(scene, TAU, 1.0, palette.guide.mixed(palette.sky_bottom, FADED));
+    if has_marks {
+        let at = circle.point(circle.twist + 0.5 * TAU, 1.0);
+        let centre = circle.point(0.0, 0.0);
+        let side = LabelSide::clear_of(&[centre], at, &scene.camera);
+        let clear = CLEAR * limb.bones().outer_limit();
+        let label = Label::new(at, clear, side, palette.text);
+        scene.add_label(label, format_args!("Elbow circle"));
+    }
     let has_marks = has_marks && !limb.is_limited();
     if circle.twist > LEAST_TWIST {
         circle.add_spoke(scene, circle.twist, accent, false);

@@ -16,7 +16,7 @@ use crate::document::Overlay;
 use crate::session::{Actions, DisplayEdit, LimbFigure, PanelTab, Session, ViewAction};
 pub(super) use explain::{globe_legend, triangle};
 use limb::LimbTarget;
-pub(super) use skeleton::{ADD_TARGETS, BIND, may_be_person};
+pub(super) use skeleton::{ADD_TARGETS, BIND, may_be_person, target_name};
 
 pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let height = ui.available_height();
@@ -77,7 +77,9 @@ pub(super) fn of_parts(ui: &mut Ui, session: &Session, parts: Parts, actions: &m
 fn guides(ui: &mut Ui, session: &Session, is_limb: bool, actions: &mut Actions) {
     if is_limb {
         widgets::section(ui, "Guides", |ui| {
-            widgets::check_boxes(ui, session, 2, &Overlay::GUIDES, None, actions);
+            let globe = [Overlay::SingularityGlobe];
+            let all: Vec<_> = Overlay::GUIDES.into_iter().chain(globe).collect();
+            widgets::check_boxes(ui, session, 2, &all, None, actions);
         });
     } else {
         widgets::named_section(ui, "guides of a figure", "Guides", |ui| {

@@ -20,30 +20,29 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, limb: &ShownLimb, action
     transport_path(ui, path, limb.words, actions);
     let (ghosts, globe) = (Overlay::TwistReferences, Overlay::SingularityGlobe);
     let told = "Show the limb with the other twist references";
-    let (globe_name, globe_told) = labels::overlay(globe);
+    let (_, globe_told) = labels::overlay(globe);
     ui.horizontal(|ui| {
         widgets::overlay_check_box(ui, session, ghosts, "Ghosts", told, None, actions);
-        widgets::overlay_check_box(ui, session, globe, globe_name, globe_told, None, actions);
+        let name = "Singularity globe";
+        widgets::overlay_check_box(ui, session, globe, name, globe_told, None, actions);
     });
 }
 
 /// Shows the colour bar of the singularity globe, on a logarithmic scale of the gain. `middle` is
 /// the word for the middle joint of the limb.
 pub(in crate::ui) fn globe_legend(ui: &mut Ui, middle: &str) {
-    ui.label(format!("{} swing", capital(middle)));
+    ui.label(format!("{} speed relative to the Pointer", capital(middle)));
     let summary = "Gain: elbow degrees per degree of the Pointer, 0 to 8 and more";
     let (palette, end) = (style::palette(ui), Palette::MAX_GAIN.ln_1p());
-    // As clear where the globe is clear.
-    let most = palette.gain(Palette::MAX_GAIN).channels()[3];
+    // As clear as the globe, which is clearer in the middle than at its rim.
+    const RIM: f32 = 2.0;
     let colour = |place: f32| {
         let colour = palette.gain((place * end).exp_m1());
-        style::colour(colour.with_opacity(colour.channels()[3] / most))
+        style::colour(colour.with_opacity((RIM * colour.channels()[3]).min(1.0)))
     };
-    let gains = [(0.0, "0°"), (1.0, "1°"), (2.0, "2°"), (5.0, "5°"), (Palette::MAX_GAIN, "8°+")];
+    let gains = [(0.0, "0×"), (1.0, "1×"), (2.0, "2×"), (5.0, "5×"), (Palette::MAX_GAIN, "8×+")];
     let marks = gains.map(|(gain, text)| (f32::ln_1p(gain) / end, text));
     widgets::colour_bar(ui, summary, colour, &marks);
-    ui.weak("for each 1° the Pointer turns");
-    ui.weak(format!("Singular: the {middle} spins"));
 }
 
 fn table(ui: &mut Ui, limb: &ShownLimb, path: &TransportPath, actions: &mut Actions) {

@@ -22,7 +22,7 @@ use crate::ui::widgets::{self, AXES, Choice, PointSliders, Slider};
 pub(super) use outliner::panel as outliner;
 pub(in crate::ui) use skin::BIND;
 pub(super) use skin::{areas as skin_areas, section as skin_section};
-pub(in crate::ui) use targets::{ADD_TARGETS, may_be_person};
+pub(in crate::ui) use targets::{ADD_TARGETS, may_be_person, target_name};
 pub(super) use targets::{note, note_height, space};
 
 /// The target of the selected joint or of its limb, of which the panel has a note; `None` without
