@@ -189,7 +189,7 @@ impl PanelTab {
             Self::Triangle => "Triangle",
             Self::Twist => "Twist",
             Self::Reach => "Reach",
-            Self::Pops => "Pops",
+            Self::Pops => "Jumps",
             Self::Solver => "Solver",
             Self::Race => "Race",
             Self::Skin => "Skin",

@@ -22,7 +22,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
                 Some(1.0) => "Limb · IK (hand → joint angles)".to_owned(),
                 Some(0.0) => "Limb · FK (joint angles → hand)".to_owned(),
                 Some(influence) => format!("Limb · {:.0} % IK, rest FK", influence * 100.0),
-                None => format!("Figure · {}", session.rig().solver.method.title()),
+                None => "Figure".to_owned(),
             };
             ui.add(Label::new(RichText::new(rig).weak()).selectable(false));
             ui.separator();

@@ -27,12 +27,10 @@ pub(in crate::ui) fn sentence_on_limb(session: &Session, limb: &ShownLimb) -> St
     if pose.stretch > 1.0 {
         return format!("Stretched: the limbs are {:.2} times as long.", pose.stretch);
     }
-    let is_cursor = rig.sole_limb().is_some();
-    let target = if is_cursor { "its target, the Cursor" } else { "its target" };
     match pose.reach {
-        Some(Reach::TooFar) => format!("Too far: the limb points at {target}."),
+        Some(Reach::TooFar) => "Too far: the limb points at its target.".to_owned(),
         Some(Reach::TooClose) => "Too close: the limb is folded.".to_owned(),
-        Some(Reach::Reached) | None => format!("The {end} is at {target}."),
+        Some(Reach::Reached) | None => format!("The {end} is at its target."),
     }
 }
 

@@ -31,7 +31,11 @@ fn hand(bench: &Bench) -> Vec3 {
 #[test]
 fn the_diamond_adds_and_deletes_a_key_of_the_pin_at_the_playhead() {
     let mut bench = Bench::with_timeline(LARGE);
+    assert!(!bench.shows(Role::Button, DIAMOND), "a pin that is off and has no keys has none");
+    bench.click(Role::CheckBox, PIN);
     assert!(has_tooltip(&mut bench, Role::Button, DIAMOND));
+    bench.apply([TransactionAction::Undo]);
+    bench.apply([KeysEdit::Key(vec![channels::PINNED])]);
     go_to(&mut bench, 1.0);
     bench.click(Role::Button, DIAMOND);
     assert!(is_at_key(&bench) && bench.shows(Role::Button, "Channel hand · pinned to world"));
@@ -44,21 +48,21 @@ fn the_diamond_adds_and_deletes_a_key_of_the_pin_at_the_playhead() {
     bench.click(Role::CheckBox, PIN);
     assert!(bench.session().history().is_overridden(channels::PINNED), "until the time changes");
     bench.click(Role::Button, DIAMOND);
-    assert_eq!(times(&bench, channels::PINNED), [1.0, 2.0]);
+    assert_eq!(times(&bench, channels::PINNED), [0.0, 1.0, 2.0]);
     assert_eq!(
         (times(&bench, channels::HAND), times(&bench, channels::PIN)),
         (vec![1.0], vec![2.0])
     );
     bench.click(Role::Button, DIAMOND);
-    assert_eq!(times(&bench, channels::PINNED), [1.0]);
+    assert_eq!(times(&bench, channels::PINNED), [0.0, 1.0]);
     bench.apply([TransactionAction::Undo]);
-    assert_eq!(times(&bench, channels::PINNED), [1.0, 2.0]);
+    assert_eq!(times(&bench, channels::PINNED), [0.0, 1.0, 2.0]);
 }
 
 #[test]
 fn a_hand_planted_by_the_check_box_and_k_stays_until_it_is_lifted() {
     let mut bench = Bench::with_timeline(LARGE);
-    bench.click(Role::Button, DIAMOND);
+    bench.apply([KeysEdit::Key(vec![channels::PINNED, channels::HAND])]);
     bench.apply([KeysEdit::Key(vec![channels::ROOT_OFFSET])]);
     go_to(&mut bench, 1.0);
     let place = hand(&bench);

@@ -28,7 +28,7 @@ fn show_me(bench: &mut Bench, label: &str, meaning: &str, step: usize) {
 fn a_term_of_the_arm_explains_itself_and_shows_its_step() {
     for (label, tab, meaning, step) in [
         ("Twist", None, "The angle by which the elbow is turned", 4),
-        ("from", None, "The rule that says where on its circle", 8),
+        ("Reference", None, "The rule that says where on its circle", 8),
         ("Softness", None, "Lets the hand slow down", 7),
         ("Stretch", None, "Lets the limbs become longer", 6),
         ("Holonomy", Some(PanelTab::Twist), "The angle by which a transported elbow", 8),
@@ -98,7 +98,7 @@ fn a_term_is_underlined_with_dots() {
         let preferences = Preferences { offers_tour, theme, ..Preferences::default() };
         let mut bench = Bench::first(LARGE, preferences);
         let picture = bench.harness.render().expect("a picture");
-        let rect = bench.rect(Role::Label, "from");
+        let rect = bench.rect(Role::Label, "Reference");
         let (left, right) = (rect.left().round() as u32, rect.right() as u32);
         // Right of the word, on the panel.
         let panel = *picture.get_pixel(left - 3, rect.center().y as u32);

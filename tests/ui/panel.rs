@@ -220,7 +220,7 @@ fn the_explain_panel_closes_and_opens_from_the_view_menu() {
 #[test]
 fn the_explain_panel_says_in_a_sentence_how_far_the_arm_reaches() {
     for (hand, reach, sentence) in [
-        (Vec3::new(250.0, 120.0, 60.0), Reach::Reached, "The hand is at its target, the Cursor."),
+        (Vec3::new(250.0, 120.0, 60.0), Reach::Reached, "The hand is at its target."),
         (
             Vec3::new(537.2, 0.0, 0.0),
             Reach::TooFar,
@@ -288,8 +288,8 @@ fn nothing_covers_the_title_of_the_socket_twist_with_any_reference() {
             let title = title.with_max_x(title.left() + 100.0);
             let choice = bench.rect(Role::ComboBox, "Twist reference");
             assert!(!title.intersects(choice), "{kind:?}: {title:?} {choice:?}");
-            if bench.shows(Role::Label, "from") {
-                let label = bench.rect(Role::Label, "from");
+            if bench.shows(Role::Label, "Reference") {
+                let label = bench.rect(Role::Label, "Reference");
                 assert!(
                     !title.intersects(label) && !label.intersects(choice),
                     "{kind:?}: {label:?}"

@@ -786,6 +786,17 @@ fn lists(bench: &Bench, name: &str) -> bool {
 }
 
 #[test]
+fn a_figure_is_unfolded_at_first_to_the_end_of_its_first_limb() {
+    let bench = Bench::example("human");
+    for name in ["right_upper_arm", "right_forearm", "right_hand", "left_thigh", "neck"] {
+        assert!(lists(&bench, name), "{name}");
+    }
+    for name in ["right_thumb_1", "left_upper_arm", "left_shin", "head"] {
+        assert!(!lists(&bench, name), "{name}");
+    }
+}
+
+#[test]
 fn hands_are_folded_until_a_finger_is_selected() {
     let mut bench = Bench::example("human");
     assert!(lists(&bench, "neck") && !lists(&bench, "left_upper_arm"), "twelve rows at most");

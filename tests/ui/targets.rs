@@ -3,7 +3,7 @@
 use egui::PointerButton::Primary as LEFT;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, vec2};
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::Vec3;
 use ik_arm::document::{Channel, Target};
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
@@ -330,17 +330,28 @@ fn a_hand_keeps_its_orientation_while_the_arm_moves() {
 }
 
 #[test]
-fn a_target_that_is_reached_has_a_tick_and_one_that_is_not_its_distance() {
+fn a_target_that_is_not_reached_says_its_distance_and_one_that_is_disabled_that_it_is_off() {
     let mut bench = with_targets();
-    // The note on a selected target says "Reached", too.
+    // The note on a selected target says its distance, too.
     bench.apply([SelectAction::Joints(Vec::new())]);
-    let all = bench.session().rig().targets.len();
-    let ticks =
-        |bench: &Bench| bench.harness.query_all_by_role_and_label(Role::Label, "Reached").count();
-    assert_eq!(ticks(&bench), all);
+    let says = |bench: &Bench, text: &str| {
+        bench.harness.query_all_by_role_and_label(Role::Label, text).count()
+    };
+    let numbers = |bench: &Bench| {
+        let labels = bench.harness.query_all_by_role(Role::Label);
+        labels
+            .filter(|it| it.accesskit_node().value().is_some_and(|it| it.parse::<f32>().is_ok()))
+            .count()
+    };
+    let others = numbers(&bench);
     let moved = *target(&bench, "left_forearm");
     bench.apply([TargetEdit::SetTarget(Target { home: moved.home + Vec3::X * 3.0, ..moved })]);
-    assert_eq!(ticks(&bench), all - 1);
+    let report = bench.session().posed().target_report(moved.joint).expect("a report");
+    assert!(report.error > 1.0);
+    assert_eq!(says(&bench, &format!("{:.3}", report.error)), 1);
+    assert_eq!((numbers(&bench), says(&bench, "off")), (others + 1, 0));
+    bench.apply([TargetEdit::SetTarget(Target { enabled: false, ..moved })]);
+    assert_eq!((numbers(&bench), says(&bench, "off")), (others, 1));
 }
 
 #[test]

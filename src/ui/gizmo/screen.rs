@@ -10,7 +10,7 @@ use crate::document::{Camera, Overlay, Projection, Ray};
 use crate::kinematics::chain_ik::Ellipsoid;
 use crate::rig::LimbPart;
 use crate::session::{Constraint, Drag, Session};
-use crate::ui::style;
+use crate::ui::{panels, style};
 
 /// Converts world points to screen positions in points, and screen positions to rays in the world.
 pub(in crate::ui) struct ScreenProjection {
@@ -153,7 +153,7 @@ pub(in crate::ui) fn aims(
         }
         let has_name = session.shown().display.shows(Overlay::Labels);
         if let Some(joint) = session.rig().skeleton.joint(target.joint).filter(|_| has_name) {
-            let text = format!("{} aim", joint.name);
+            let text = panels::target_name(target, &joint.name).into_owned();
             let font = TextStyle::Body.resolve(ui.style());
             let text = painter.layout_no_wrap(text, font, ui.visuals().text_color());
             let half = 0.5 * text.size().y;

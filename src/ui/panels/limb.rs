@@ -169,12 +169,17 @@ fn hand(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
 }
 
 /// Shows the switch of a target's pin with its diamond, which also keys the point that the target
-/// has.
+/// has. The pin of a figure that is one limb has a diamond while it is on or has keys.
 pub(in crate::ui) fn pin(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
     let tooltip = "Keep the target in place when what it is on moves";
     let changed = widgets::check_box(ui, PINNED, tooltip, target.is_pinned, None);
     let joint = target.joint;
     actions.extend(changed.map(|is_pinned| TargetEdit::Pin { joint, is_pinned }));
+    let has_key = session.document().keys.has(Channel::Pinned(joint));
+    // The arm's other values have no diamonds.
+    if session.rig().sole_limb().is_some() && !has_key && !target.is_pinned {
+        return;
+    }
     let others = vec![Channel::of_point(target)];
     KeyButton { channel: Channel::Pinned(joint), others }.show(ui, session, PINNED, actions);
 }
@@ -415,7 +420,7 @@ fn socket_twist(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
 fn reference(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     /// Width in points of the section's title with its triangle.
     const TITLE: f32 = 104.0;
-    const LABEL: &str = "from";
+    const LABEL: &str = "Reference";
     let chosen = limb.settings.reference;
     let spacing = ui.spacing();
     let around = 2.0 * (spacing.button_padding.x + spacing.item_spacing.x);

@@ -21,7 +21,7 @@ pub(in crate::ui) fn tabs<T: PartialEq + Copy>(
     tabs: &[Alternative<'_, T>],
 ) -> Option<T> {
     let mut pressed = None;
-    let gap = if ui.available_width() > ROOMY { 16.0 } else { 2.0 };
+    let gap = if ui.available_width() > ROOMY { 16.0 } else { 0.0 };
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(gap, 0.0);
         ui.spacing_mut().button_padding = vec2(PADDING, 5.0);
@@ -47,7 +47,7 @@ pub(in crate::ui) fn tabs<T: PartialEq + Copy>(
 }
 
 /// Space beside the name of a tab, in points: six tabs have room in a row of the page.
-const PADDING: f32 = 3.0;
+const PADDING: f32 = 2.75;
 /// Width of a place, in points, from which tabs stand farther apart.
 const ROOMY: f32 = 480.0;
 

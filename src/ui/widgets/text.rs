@@ -2,8 +2,7 @@
 
 use egui::text::{LayoutJob, TextFormat};
 use egui::{
-    Align, Color32, FontFamily, FontId, Label, Response, RichText, Role, Sense, Stroke, Ui, Vec2,
-    WidgetInfo, accesskit, vec2,
+    Align, Color32, FontFamily, FontId, Label, Response, RichText, Role, Ui, WidgetInfo, accesskit,
 };
 
 use crate::words::significant;
@@ -28,17 +27,6 @@ pub(in crate::ui) fn short(value: f32) -> String {
         ..100_000.0 => format!("{value:.0}"),
         _ => format!("{value:.1e}"),
     }
-}
-
-/// Shows a tick in the colour of weak text, painted because few fonts have one. `name` is its name
-/// for screen readers.
-pub(in crate::ui) fn tick(ui: &mut Ui, name: &str) -> Response {
-    let (rect, tick) = ui.allocate_exact_size(Vec2::splat(12.0), Sense::hover());
-    let points = [vec2(0.1, 0.55), vec2(0.4, 0.85), vec2(0.95, 0.15)];
-    let points = points.map(|point| rect.min + point * rect.size()).to_vec();
-    ui.painter().line(points, Stroke::new(1.5, ui.visuals().weak_text_color()));
-    tick.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
-    tick
 }
 
 /// Formats an angle in radians as degrees, with three significant digits: "34.2°".

@@ -17,7 +17,7 @@ use crate::kinematics::two_bone::Reach;
 use crate::rig::LimbPart;
 use crate::session::{Actions, LimbFigure, SelectAction, Session, ShownLimb, TourState};
 use crate::ui::widgets::Choice;
-use crate::ui::{pose_summary, widgets};
+use crate::ui::{labels, pose_summary, widgets};
 use crate::words::LimbWords;
 pub(in crate::ui) use twist_references::globe_legend;
 
@@ -176,7 +176,8 @@ fn sentence(ui: &mut Ui, session: &Session, limb: &ShownLimb) {
         if is_short && limb.frames.pose().reach == Some(Reach::Reached) {
             let ReachLimits { inner, outer } = limb.frames.limits;
             let [inner, outer] = [inner, outer].map(|it| limb.lengths().show(it));
-            ui.weak(format!("Its reach is {inner} to {outer}."));
+            let (_, unit) = labels::unit_of_length(session.document().metres_per_unit());
+            ui.weak(format!("Its reach is {inner} to {outer} {unit}."));
         }
     });
 }

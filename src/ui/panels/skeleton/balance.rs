@@ -76,7 +76,7 @@ fn distance(ui: &mut Ui, session: &Session, report: &BalanceReport) {
         let missing = ui.label(RichText::new(text::short(report.error())).monospace());
         missing.on_hover_text("Distance of the centre of mass from where it should be");
     } else {
-        text::tick(ui, "Balanced").on_hover_text("The centre of mass is where it should be");
+        ui.weak("balanced").on_hover_text("The centre of mass is where it should be");
     }
 }
 

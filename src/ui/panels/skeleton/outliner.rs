@@ -4,11 +4,12 @@ use std::collections::HashMap;
 
 use egui::collapsing_header::{CollapsingState, paint_default_icon};
 use egui::{
-    Align2, Color32, Frame, Id, Key, Margin, Painter, Panel, Pos2, Rect, Response, RichText, Role,
-    ScrollArea, Sense, Stroke, TextEdit, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    Align2, Color32, Frame, Id, Key, Margin, Panel, Rect, Response, RichText, Role, ScrollArea,
+    Sense, Stroke, TextEdit, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
-use crate::kinematics::skeleton::{JointId, Skeleton};
+use crate::document::SkeletonRig;
+use crate::kinematics::skeleton::JointId;
 use crate::session::{Actions, JointEdit, SelectAction, Session};
 use crate::ui::keyboard::{focus, viewport};
 use crate::ui::widgets;
@@ -16,6 +17,8 @@ use crate::ui::{commands, style};
 
 const ROW: f32 = 20.0;
 const INDENT: f32 = 13.0;
+/// Width of the word at the right of a row.
+const MARK: f32 = 48.0;
 /// Width of the place of a triangle that folds a row.
 const TRIANGLE: f32 = 14.0;
 /// Number of children from which a joint that has a parent is folded at first: fingers, for example.
@@ -40,15 +43,15 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
     let whole = AROUND + ROW * session.skeleton().joints().len() as f32;
     let is_whole = whole <= HEIGHT.min(first);
     let most_rows = if is_whole { MOST_ROWS } else { ((first - AROUND) / ROW) as usize };
-    let (deepest, rows) = seen_at_first(session.skeleton(), most_rows.min(MOST_ROWS));
+    let at_first = AtFirst::new(session.rig(), most_rows.min(MOST_ROWS));
     let open = frame.inner_margin(Margin::symmetric(0, 4));
     let panel = match state.is_open() {
         true if is_whole => {
             Panel::top("whole outliner").resizable(false).exact_size(whole).frame(open)
         }
-        true => Panel::top(Id::unique(("outliner", rows)))
+        true => Panel::top(Id::unique(("outliner", at_first.rows)))
             .resizable(true)
-            .default_size((AROUND + ROW * rows as f32).min(first))
+            .default_size((AROUND + ROW * at_first.rows as f32).min(first))
             .size_range(whole_rows(0.0)..=most)
             .frame(open),
         false => Panel::top("folded outliner")
@@ -59,7 +62,7 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
         heading(ui, session, &mut state, actions);
         if state.is_open() {
             let filter = filter(ui);
-            tree(ui, session, &filter, deepest, actions);
+            tree(ui, session, &filter, &at_first, actions);
         }
     });
     state.store(ui);
@@ -130,16 +133,68 @@ struct OutlinerRow {
     is_found: bool,
     /// Influence of the targets that turn the joint.
     influence: f32,
-    /// True if the target that ends here is enabled; `None` without a target.
-    target: Option<bool>,
+    has_target: bool,
 }
 
-/// Shows the tree, at first down to the depth `deepest`.
-fn tree(ui: &mut Ui, session: &Session, filter: &str, deepest: usize, actions: &mut Actions) {
+/// What is seen of the tree before the user folds or unfolds anything: all joints down to a depth, and
+/// the first limb, which the pages are about at first.
+struct AtFirst {
+    /// Depth from which joints are folded.
+    deepest: usize,
+    /// True for a joint above the end of the first limb.
+    is_open: Vec<bool>,
+    /// Number of rows.
+    rows: usize,
+}
+
+impl AtFirst {
+    /// As deep as gives at most this number of rows, if that can be.
+    fn new(rig: &SkeletonRig, most: usize) -> Self {
+        let skeleton = &rig.skeleton;
+        let count = skeleton.joints().len();
+        let (mut depths, mut children) = (Vec::with_capacity(count), vec![0; count]);
+        for joint in skeleton.joints() {
+            depths.push(joint.parent.map_or(0, |parent| depths[parent.index()] + 1));
+            joint.parent.into_iter().for_each(|parent| children[parent.index()] += 1);
+        }
+        let mut is_open = vec![false; count];
+        let end = rig.limb_targets().next().map(|target| rig.end_of(target));
+        for joint in end.into_iter().flat_map(|end| skeleton.ancestors(end).skip(1)) {
+            is_open[joint.index()] = true;
+        }
+        let mut found = Self { deepest: 0, is_open, rows: 0 };
+        for deepest in 0..=depths.iter().copied().max().unwrap_or(0) {
+            let deeper = Self { deepest, ..found };
+            let mut seen = Vec::with_capacity(count);
+            for joint in skeleton.joints() {
+                let is_seen = joint.parent.is_none_or(|it| {
+                    let at = it.index();
+                    seen[at] && !deeper.is_folded(it, depths[at], children[at])
+                });
+                seen.push(is_seen);
+            }
+            let rows = seen.into_iter().filter(|is_seen| *is_seen).count();
+            if deepest > 0 && rows > most {
+                return Self { deepest: deepest - 1, ..deeper };
+            }
+            found = Self { rows, ..deeper };
+        }
+        found
+    }
+
+    /// True if the children of a joint at a depth are hidden at first.
+    fn is_folded(&self, joint: JointId, depth: usize, children: usize) -> bool {
+        let is_deep = depth >= self.deepest || depth > 0 && children >= FOLDED_FROM;
+        is_deep && !self.is_open[joint.index()]
+    }
+}
+
+/// Shows the tree.
+fn tree(ui: &mut Ui, session: &Session, filter: &str, at_first: &AtFirst, actions: &mut Actions) {
     let kept = ui.make_persistent_id("folded joints");
     let mut folds: Folds = ui.data(|data| data.get_temp(kept)).unwrap_or_default();
     unfold_above_new(ui, session, &mut folds);
-    let rows = rows(session, filter, deepest, &folds);
+    let rows = rows(session, filter, at_first, &folds);
     // Contents that were higher than the panel would make it grow.
     let whole = ui.available_rect_before_wrap();
     let inside = whole.shrink2(vec2(0.0, LIST_MARGIN));
@@ -203,7 +258,7 @@ fn unfold_above_new(ui: &Ui, session: &Session, folds: &mut Folds) {
 
 /// Rows in depth-first order, so that children follow their parent: all that are not in a folded
 /// joint or, with a filter, those that it finds and the joints above them.
-fn rows(session: &Session, filter: &str, deepest: usize, folds: &Folds) -> Vec<OutlinerRow> {
+fn rows(session: &Session, filter: &str, at_first: &AtFirst, folds: &Folds) -> Vec<OutlinerRow> {
     let filter = filter.trim().to_lowercase();
     let skeleton = session.skeleton();
     let mut children = vec![Vec::new(); skeleton.joints().len()];
@@ -216,15 +271,15 @@ fn rows(session: &Session, filter: &str, deepest: usize, folds: &Folds) -> Vec<O
     }
     let rig = session.rig();
     let influences = rig.influences();
-    let mut targets = vec![None; children.len()];
+    let mut has_target = vec![false; children.len()];
     for target in &rig.targets {
-        targets[rig.end_of(target).index()] = Some(target.enabled);
+        has_target[rig.end_of(target).index()] = true;
     }
     let (found, has_found_below) = found(session, &filter);
     let mut rows = Vec::with_capacity(children.len());
     while let Some((joint, depth)) = open.pop() {
         let (index, below) = (joint.index(), &children[joint.index()]);
-        let is_first = depth >= deepest || depth > 0 && below.len() >= FOLDED_FROM;
+        let is_first = at_first.is_folded(joint, depth, below.len());
         let is_folded =
             filter.is_empty() && *folds.0.get(&skeleton[joint].name).unwrap_or(&is_first);
         if !is_folded {
@@ -239,31 +294,10 @@ fn rows(session: &Session, filter: &str, deepest: usize, folds: &Folds) -> Vec<O
             is_folded: (!below.is_empty()).then_some(is_folded),
             is_found: found[index],
             influence: influences[index],
-            target: targets[index],
+            has_target: has_target[index],
         });
     }
     rows
-}
-
-/// The greatest depth of the rows that are seen at first, and their number: all joints down to there
-/// are at most `most`.
-fn seen_at_first(skeleton: &Skeleton, most: usize) -> (usize, usize) {
-    let mut depths = Vec::with_capacity(skeleton.joints().len());
-    let mut counts = Vec::new();
-    for joint in skeleton.joints() {
-        let depth = joint.parent.map_or(0, |parent| depths[parent.index()] + 1);
-        depths.push(depth);
-        counts.resize(counts.len().max(depth + 1), 0);
-        counts[depth] += 1;
-    }
-    let mut seen = (0, 0);
-    for (depth, count) in counts.into_iter().enumerate() {
-        if seen.1 + count > most {
-            break;
-        }
-        seen = (depth, seen.1 + count);
-    }
-    seen
 }
 
 /// For each joint whether its name contains the filter, and whether that of a joint below it does; all
@@ -295,8 +329,7 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow, folds: &mut Folds) ->
         let white = egui::Color32::WHITE;
         fonts.layout_no_wrap(joint.name.clone(), font.clone(), white).size().x
     });
-    let marks = TRIANGLE + if row.target.is_some() { 68.0 } else { 48.0 };
-    let size = vec2(ui.available_width().max(indent + width + marks), ROW);
+    let size = vec2(ui.available_width().max(indent + width + TRIANGLE + MARK), ROW);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let triangle = Rect::from_min_size(pos2(rect.left() + indent, rect.top()), vec2(TRIANGLE, ROW));
     let triangle = row.is_folded.map(|is_folded| {
@@ -334,14 +367,11 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow, folds: &mut Folds) ->
     if let Some((triangle, is_folded)) = triangle {
         widgets::fold_mark(painter, triangle.center(), is_folded, visuals.weak_text_color());
     }
-    let what_poses = match (joint.locked, row.influence > 0.0) {
-        (true, _) => "locked",
-        (false, true) => "IK",
-        (false, false) => "",
-    };
-    let small = TextStyle::Small.resolve(ui.style());
-    let at = pos2(rect.right() - 8.0, rect.center().y);
-    painter.text(at, Align2::RIGHT_CENTER, what_poses, small, visuals.weak_text_color());
+    if let Some((mark, colour)) = mark(ui, session, row.joint) {
+        let small = TextStyle::Small.resolve(ui.style());
+        let at = pos2(rect.right() - 8.0, rect.center().y);
+        painter.text(at, Align2::RIGHT_CENTER, mark, small, colour);
+    }
     let text = match (selected, row.is_found) {
         (true, _) => visuals.strong_text_color(),
         (false, true) => visuals.text_color(),
@@ -349,11 +379,6 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow, folds: &mut Folds) ->
     };
     let at = pos2(rect.left() + indent + TRIANGLE + 2.0, rect.center().y);
     painter.text(at, Align2::LEFT_CENTER, &joint.name, font, text);
-    if let Some(enabled) = row.target {
-        let colour = if enabled { style::accent(ui) } else { visuals.weak_text_color() };
-        let centre = pos2(rect.left() + indent + TRIANGLE + width + 14.0, rect.center().y);
-        target_mark(painter, centre, colour);
-    }
     reveal(ui, session, row, &response);
     let select = format!("Select {}", joint.name);
     let mut said = vec![select.as_str()];
@@ -362,7 +387,7 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow, folds: &mut Folds) ->
         (false, true) => "posed by a target (IK)",
         (false, false) => "posed by its own angles (FK)",
     });
-    said.extend(row.target.map(|_| "has a target"));
+    said.extend(row.has_target.then_some("has a target"));
     response.on_hover_text(format!("{}. Double-click to rename", said.join(", ")))
 }
 
@@ -372,9 +397,16 @@ fn toggles(ui: &Ui, is_folded: bool) -> bool {
     ui.input(|input| input.key_pressed(key))
 }
 
-fn target_mark(painter: &Painter, at: Pos2, colour: Color32) {
-    painter.circle_stroke(at, 4.5, (1.5, colour));
-    painter.circle_filled(at, 1.5, colour);
+/// The word at the right of a joint's row, and its colour: for the bones of the limb that a page is
+/// about the names that they have there.
+fn mark(ui: &Ui, session: &Session, joint: JointId) -> Option<(&'static str, Color32)> {
+    let palette = style::palette(ui);
+    let limb = session.limb_of_page()?.joints;
+    match joint {
+        _ if joint == limb.upper => Some(("upper", style::colour(palette.upper))),
+        _ if joint == limb.lower => Some(("lower", style::colour(palette.lower))),
+        _ => None,
+    }
 }
 
 /// Scrolls to the row when its joint becomes selected, and moves the keyboard focus to the row if

@@ -4,7 +4,9 @@
 pub(in crate::ui) mod space;
 mod turn;
 
-use egui::{Align, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
+use std::borrow::Cow;
+
+use egui::{Align, Layout, RichText, ScrollArea, Ui, vec2};
 
 use crate::document::{Channel, SkeletonRig, Target, TargetMotion, TargetPath};
 use crate::kinematics::chain_ik::{Root, Status};
@@ -57,6 +59,7 @@ fn row(
     actions: &mut Actions,
 ) {
     let Some((end, end_name)) = end(session.rig(), target) else { return };
+    let shown = target_name(target, end_name);
     let [to_left, to_right] =
         [Layout::right_to_left(Align::Center), Layout::left_to_right(Align::Center)];
     let height = ui.spacing().interact_size.y;
@@ -65,14 +68,21 @@ fn row(
         ui.with_layout(to_right, |ui| {
             // In one line with the check boxes below.
             ui.spacing_mut().item_spacing.x = 0.0;
-            ui.spacing_mut().button_padding.x = 3.0;
-            if switch(ui, target.enabled, end_name) {
-                let enabled = !target.enabled;
+            ui.spacing_mut().icon_spacing = 1.0;
+            ui.spacing_mut().button_padding.x = 0.0;
+            ui.spacing_mut().interact_size.y = ui.spacing().icon_width;
+            let mut enabled = target.enabled;
+            let verb = if enabled { "Disable" } else { "Enable" };
+            let switch = ui.checkbox(&mut enabled, "").on_hover_text(format!("{verb} this target"));
+            widgets::name(ui, &switch, &format!("Target of {end_name}"));
+            if switch.changed() {
                 actions.push(TargetEdit::SetTarget(Target { enabled, ..*target }));
             }
+            ui.spacing_mut().interact_size.y = height;
+            ui.spacing_mut().button_padding.x = 3.0;
             let selected = session.selection().active();
             let is_selected = selected == Some(end) || selected == Some(target.joint);
-            let label = egui::Button::selectable(is_selected, end_name).truncate();
+            let label = egui::Button::selectable(is_selected, shown.as_ref()).truncate();
             if ui.add(label).on_hover_text("Select the joint of this target").clicked() {
                 actions.push(SelectAction::Joints(vec![end]));
             }
@@ -80,27 +90,8 @@ fn row(
     });
 }
 
-/// Shows the mark of a target, filled while it is enabled, and returns whether it was pressed.
-fn switch(ui: &mut Ui, is_enabled: bool, end_name: &str) -> bool {
-    let (rect, switch) = ui.allocate_exact_size(vec2(18.0, 18.0), Sense::click());
-    let name = format!("Target of {end_name}");
-    switch.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, is_enabled, &name));
-    let visuals = ui.visuals();
-    let colour = if is_enabled { style::accent(ui) } else { visuals.weak_text_color() };
-    let ring = if switch.hovered() { 6.5 } else { 5.5 };
-    ui.painter().circle_stroke(rect.center(), ring, (1.5, colour));
-    if is_enabled {
-        ui.painter().circle_filled(rect.center(), 2.5, colour);
-    }
-    if switch.has_focus() {
-        ui.painter().circle_stroke(rect.center(), 8.0, visuals.selection.stroke);
-    }
-    let verb = if is_enabled { "Disable" } else { "Enable" };
-    switch.on_hover_text(format!("{verb} this target")).clicked()
-}
-
-/// Shows the distance from a tip to its target, or else the rotation that is missing; a tick if
-/// nothing is.
+/// Shows the distance from a tip to its target, or else the rotation that is missing; nothing for a
+/// target that is reached.
 fn what_is_missing(ui: &mut Ui, report: &TargetReport, tolerance: f32) {
     let distance = text::short(report.error);
     if report.error > tolerance {
@@ -109,10 +100,14 @@ fn what_is_missing(ui: &mut Ui, report: &TargetReport, tolerance: f32) {
     } else if let Some(angle) = report.rotation_error.filter(|_| report.misses_rotation()) {
         let missing = ui.label(RichText::new(text::degrees(angle)).monospace());
         missing.on_hover_text("Rotation that is missing");
-    } else {
-        let tick = widgets::text::tick(ui, "Reached");
-        tick.on_hover_text(format!("Reached: the tip is {distance} from the target"));
+    } else if matches!(report.outcome, TargetOutcome::Off) {
+        ui.weak("off").on_hover_text("The joint angles alone pose it");
     }
+}
+
+/// Name of a target, after the joint at its end.
+pub(in crate::ui) fn target_name<'a>(target: &Target, end: &'a str) -> Cow<'a, str> {
+    if target.aim.is_some() { format!("{end} aim").into() } else { end.into() }
 }
 
 /// The joint that a target is named after, and its name: the hand of a limb, or the target's joint.
