@@ -77,17 +77,17 @@ fn a_press_on_the_hint_moves_the_view_as_beside_it() {
 fn the_transport_bar_is_slim_until_there_are_keys_or_the_timeline_is_opened() {
     let mut bench = first_start();
     let roomy = bench.viewport().height();
-    assert!(bench.shows(Role::Button, "Timeline") && !bench.shows(Role::Button, "Key all"));
+    assert!(bench.shows(Role::Button, "Timeline") && !bench.shows(Role::Button, "Auto-key"));
     bench.click(Role::Button, "Timeline");
-    assert!(bench.shows(Role::Button, "Key all"));
+    assert!(bench.shows(Role::Button, "Auto-key"));
     assert!(bench.viewport().height() < roomy - 80.0);
     bench.click(Role::Button, "Hide timeline");
-    assert!(!bench.shows(Role::Button, "Key all"));
+    assert!(!bench.shows(Role::Button, "Auto-key"));
 
     let mut bench = first_start();
     bench.key(egui::Key::K);
     bench.settle();
-    assert!(bench.shows(Role::Button, "Key all"), "a first key opens the timeline");
+    assert!(bench.shows(Role::Button, "Auto-key"), "a first key opens the timeline");
 }
 
 #[test]

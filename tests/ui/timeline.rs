@@ -71,7 +71,7 @@ fn the_key_button_keys_hand_and_twist_of_an_arm() {
     assert!(times(&bench, channels::UPPER_LENGTH).is_empty());
     assert!(bench.shows(Role::Button, "Key of hand · target at 1.50 s"));
     assert!(bench.shows(Role::Button, "Channel hand · Socket twist"));
-    bench.click(Role::Button, "Key all");
+    bench.choose(&["Edit", "Key", "All"]);
     for channel in channels::ALL {
         let is_keyed = match channel.target() {
             Some(_) => channel.shapes(&bench.session().rig().targets[0]),
@@ -502,7 +502,7 @@ fn the_view_menu_hides_the_timeline_and_shows_it() {
     let mut bench = Bench::with_timeline(SMALL);
     let low = bench.viewport().bottom();
     bench.choose(&["View", "Timeline"]);
-    assert!(!bench.shows(Role::Button, "Key all"));
+    assert!(!bench.shows(Role::Button, "Auto-key"));
     assert!(bench.viewport().bottom() > low + 80.0);
     bench.key(Key::Escape);
     bench.settle();

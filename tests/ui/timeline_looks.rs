@@ -72,7 +72,7 @@ fn the_timeline_looks_as_it_did() {
     }
 }
 
-const CONTROLS: [(Role, &str); 18] = [
+const CONTROLS: [(Role, &str); 17] = [
     (Role::Button, "To start"),
     (Role::Button, "Previous key"),
     (Role::Button, "Play"),
@@ -82,7 +82,6 @@ const CONTROLS: [(Role, &str); 18] = [
     (Role::SpinButton, "Time"),
     (Role::SpinButton, "Frame"),
     (Role::Button, "Key"),
-    (Role::Button, "Key all"),
     (Role::Button, "Auto-key"),
     (Role::SpinButton, "Speed"),
     (Role::ComboBox, "Frame rate"),

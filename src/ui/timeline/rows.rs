@@ -208,6 +208,21 @@ impl DopeSheetRow {
         all
     }
 
+    /// True if no channel of the row changes between two neighbouring times of its keys.
+    pub fn is_held(self, session: &Session, [from, to]: [f64; 2]) -> bool {
+        /// Of the largest component: what rounding may change.
+        const ROUNDING: f32 = 1e-5;
+        // Enough times for a cubic curve, which is level at most twice.
+        let times = [0.25, 0.5, 0.75, 1.0].map(|part| from + part * (to - from));
+        self.tracks(session).into_iter().all(|(_, track)| {
+            track.at(from).is_none_or(|start| {
+                let most = ROUNDING * start.abs().max_element();
+                let held = |time| track.at(time).is_some_and(|it| it.abs_diff_eq(start, most));
+                times.into_iter().all(held)
+            })
+        })
+    }
+
     /// The row's keys at a time in seconds.
     pub fn keys(self, session: &Session, time: f64) -> Vec<Key> {
         let tracks = self.tracks(session).into_iter();
@@ -300,5 +315,34 @@ impl KeySet {
 
     pub fn has_key(&self, (channel, time): Key) -> bool {
         self.keys.contains(&(channel, (time + 0.0).to_bits()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::Example;
+    use crate::session::Preferences;
+
+    /// In the walk a foot that stands has equal keys, and each pair of keys that differ moves it.
+    #[test]
+    fn a_foot_is_held_between_equal_keys_alone() {
+        let walk = Example::find("walk").expect("an example").open().expect("valid");
+        let session = Session::with_document(Preferences::default(), walk.document);
+        let mut held = 0;
+        for name in ["left_foot", "right_foot"] {
+            let joint = session.skeleton().find(name).expect("a joint");
+            let row = DopeSheetRow::Joint { joint, is_folded: true };
+            let tracks = row.tracks(&session);
+            assert_eq!(tracks.len(), 2, "{name}: its place and its rotation");
+            for pair in row.times(&session, 0.0, 2.0).windows(2) {
+                let [from, to] = [pair[0], pair[1]];
+                let is_equal = tracks.iter().all(|(_, track)| track.get(from) == track.get(to));
+                let is_held = row.is_held(&session, [from, to]);
+                assert!(is_equal || !is_held, "{name} from {from} s to {to} s");
+                held += usize::from(is_held);
+            }
+        }
+        assert!(held >= 4, "{held} stands");
     }
 }

@@ -71,11 +71,14 @@ pub(in crate::ui) fn whole(ui: &mut Ui, session: &Session, actions: &mut Actions
         ui.add_space(gap);
         ends(ui, session, roomy, actions);
         ui.add_space(gap);
-        curves(ui, session, actions);
-        let hide = IconButton::new(Icon::Fold, "Hide timeline", "Hide the keys", None);
-        if hide.show(ui) {
-            actions.push(ViewAction::ShowTimeline(false));
-        }
+        widgets::at_right(ui, |ui| {
+            curves(ui, session, actions);
+            let hide = ui.button("Hide").on_hover_text("Hide the keys");
+            widgets::name(ui, &hide, "Hide timeline");
+            if hide.clicked() {
+                actions.push(ViewAction::ShowTimeline(false));
+            }
+        });
     });
 }
 
@@ -125,7 +128,8 @@ fn play(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let playing = session.playback().is_playing();
     let (icon, name) = if playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
     let tooltip = "Play or pause (Space)";
-    if IconButton::new(icon, name, tooltip, nothing_to_play(session)).show(ui) {
+    let button = IconButton::new(icon, name, tooltip, nothing_to_play(session));
+    if (IconButton { is_named: true, ..button }).show(ui) {
         actions.push(PlaybackAction::Play(!playing));
     }
 }
@@ -228,13 +232,9 @@ fn keying(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let channels = KeysEdit::channels_to_key(session);
     let nothing = "Nothing to key";
     let why = channels.is_empty().then_some(nothing);
-    let tooltip = "Key the selection, else hand and Socket twist (K)";
+    let tooltip = "Key the selection, else hand and Socket twist (K); Shift+K keys every channel";
     if widgets::button(ui, "Key", tooltip, why) {
         actions.push(KeysEdit::Key(channels));
-    }
-    let tooltip = "Key every channel of the pose (Shift+K)";
-    if widgets::button(ui, "Key all", tooltip, None) {
-        actions.push(KeysEdit::Key(KeysEdit::all_channels(session.shown())));
     }
     let on = session.playback().is_auto_key();
     let accent = style::accent(ui);
@@ -258,7 +258,7 @@ fn keying(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 fn pace(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
     let speed = TimeField {
         name: "Speed",
-        label: "Speed",
+        label: "",
         value: session.playback().speed(),
         unit: "×",
         speed: 0.01,

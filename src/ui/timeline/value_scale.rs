@@ -10,6 +10,7 @@ use super::rows::VALUES;
 use super::time_scale::{WHEEL, wheel_steps};
 use crate::document::{Channel, Quantity};
 
+use crate::ui::labels;
 use crate::ui::widgets::text;
 
 /// Part of the height that is left free above the highest number and below the lowest, so that they
@@ -55,10 +56,7 @@ impl ValueKind {
     pub fn unit(self, metres_per_unit: f32) -> (&'static str, &'static str) {
         match (self, metres_per_unit) {
             (Self::Angle, _) => ("degrees", "deg"),
-            (Self::Length, 1.0) => ("metres", "m"),
-            (Self::Length, 0.01) => ("centimetres", "cm"),
-            (Self::Length, 0.001) => ("millimetres", "mm"),
-            (Self::Length, _) => ("units of the scene", "units"),
+            (Self::Length, metres) => labels::unit_of_length(metres),
             (Self::Ratio, _) => ("parts of the whole", "0–1"),
         }
     }

@@ -2,8 +2,8 @@
 //! them), and the diamond that keys a value.
 
 use egui::{
-    Align, Button, Color32, Layout, Painter, Pos2, Rect, Response, RichText, Role, Sense, Shape,
-    Stroke, Ui, Vec2, WidgetInfo, WidgetText, pos2, vec2,
+    Align, Align2, Button, Color32, Layout, Painter, Pos2, Rect, Response, RichText, Role, Sense,
+    Shape, Stroke, TextStyle, Ui, Vec2, WidgetInfo, WidgetText, pos2, vec2,
 };
 
 use super::choices::explained;
@@ -53,7 +53,6 @@ pub(in crate::ui) enum Icon {
     PreviousKey,
     NextKey,
     Loop,
-    Fold,
     Close,
 }
 
@@ -65,15 +64,19 @@ pub(in crate::ui) struct IconButton<'a> {
     /// State of a toggle; `None` for other buttons.
     pub on: Option<bool>,
     pub disabled: Option<&'a str>,
+    /// True if the name stands beside the icon.
+    pub is_named: bool,
 }
 
 impl<'a> IconButton<'a> {
     /// Size in points.
     pub const SIZE: Vec2 = vec2(28.0, 24.0);
+    /// Width in points of a button with its name, the same for all names.
+    const NAMED: f32 = 74.0;
 
     /// A button that is not a toggle.
     pub fn new(icon: Icon, name: &'a str, tooltip: &'a str, disabled: Option<&'a str>) -> Self {
-        Self { icon, name, tooltip, on: None, disabled }
+        Self { icon, name, tooltip, on: None, disabled, is_named: false }
     }
 
     /// Shows the button and returns whether it was pressed.
@@ -87,18 +90,30 @@ impl<'a> IconButton<'a> {
     }
 
     fn button(&self, ui: &mut Ui) -> Response {
-        let (rect, response) = ui.allocate_exact_size(Self::SIZE, Sense::click());
+        let width = if self.is_named { Self::NAMED } else { Self::SIZE.x };
+        let (rect, response) = ui.allocate_exact_size(vec2(width, Self::SIZE.y), Sense::click());
         let enabled = ui.is_enabled();
         response.widget_info(|| match self.on {
             Some(on) => WidgetInfo::selected(Role::Button, enabled, on, self.name),
             None => WidgetInfo::labeled(Role::Button, enabled, self.name),
         });
-        let on = self.on == Some(true);
-        let visuals = ui.style().interact_selectable(&response, on);
-        let painter = ui.painter();
-        let (fill, stroke) = (visuals.weak_bg_fill, visuals.bg_stroke);
-        painter.rect(rect, visuals.corner_radius, fill, stroke, egui::StrokeKind::Inside);
-        self.icon.paint(painter, rect.center(), visuals.fg_stroke.color);
+        let visuals = ui.style().interact(&response);
+        let (accent, painter) = (style::accent(ui), ui.painter());
+        let (stroke, icon) = match self.on {
+            Some(true) => (Stroke::new(1.0, accent), accent),
+            _ => (visuals.bg_stroke, visuals.fg_stroke.color),
+        };
+        let (fill, inside) = (visuals.weak_bg_fill, egui::StrokeKind::Inside);
+        painter.rect(rect, visuals.corner_radius, fill, stroke, inside);
+        let mut centre = rect.center();
+        if self.is_named {
+            let font = TextStyle::Button.resolve(ui.style());
+            let name = painter.layout_no_wrap(self.name.to_owned(), font, icon);
+            let at = Align2::CENTER_CENTER.anchor_size(centre + vec2(8.0, 0.0), name.size());
+            centre.x = at.left() - 10.0;
+            painter.galley(at.min, name, icon);
+        }
+        self.icon.paint(painter, centre, icon);
         response
     }
 }
@@ -135,7 +150,6 @@ impl Icon {
                 shape(&[(-1.5 * side, 0.0), (-8.0 * side, -5.0), (-8.0 * side, 5.0)]);
                 painter.add(diamond(at(4.0 * side, 0.0), 4.5, colour, Stroke::NONE));
             }
-            Self::Fold => shape(&[(-5.5, -3.0), (5.5, -3.0), (0.0, 4.0)]),
             Self::Close => cross(at(0.0, 0.0), 4.5),
             Self::Loop => {
                 let place = |turn: f32| at(5.5 * turn.cos(), 5.5 * turn.sin());

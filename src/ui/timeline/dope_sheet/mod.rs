@@ -4,8 +4,8 @@ pub(super) mod mouse;
 
 use egui::containers::scroll_area::{DragScroll, ScrollSource};
 use egui::{
-    Color32, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo,
-    accesskit, pos2, vec2,
+    Color32, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, TextStyle, Ui, UiBuilder,
+    WidgetInfo, accesskit, pos2, vec2,
 };
 
 use super::context_menu;
@@ -214,6 +214,36 @@ impl DopeSheet<'_> {
         response.on_hover_text(format!("Select {shown}; Shift or Ctrl adds it to the selection"));
     }
 
+    /// Draws a bar between keys of a row, but that of all keys, where its channels stay as they are, and
+    /// writes that into a long one.
+    fn holds(&self, ui: &Ui, row: DopeSheetRow, times: &[f64], rect: Rect) {
+        const HEIGHT: f32 = 3.0;
+        // Least length of a bar, and of one with a word, in points.
+        const LEAST: f32 = 3.0 * SIZE;
+        const ROOMY: f32 = 64.0;
+        if matches!(row, DopeSheetRow::All { .. }) {
+            return;
+        }
+        let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+        let weak = ui.visuals().weak_text_color();
+        for pair in times.windows(2) {
+            let [from, to] = [pair[0], pair[1]].map(|time| self.scale.x(time));
+            if to - from < LEAST || !row.is_held(self.session, [pair[0], pair[1]]) {
+                continue;
+            }
+            let middle = pos2(0.5 * (from + to), rect.center().y);
+            let bar = Rect::from_center_size(middle, vec2(to - from, HEIGHT));
+            painter.rect_filled(bar, 1.0, weak.gamma_multiply(0.6));
+            if bar.width() > ROOMY {
+                let font = TextStyle::Small.resolve(ui.style());
+                let word = painter.layout_no_wrap("held".to_owned(), font, weak);
+                let at = Rect::from_center_size(middle, word.size());
+                painter.rect_filled(at.expand2(vec2(4.0, 0.0)), 0.0, ui.visuals().extreme_bg_color);
+                painter.galley(at.min, word, weak);
+            }
+        }
+    }
+
     fn keys(&self, ui: &Ui, row: DopeSheetRow, rect: Rect, actions: &mut Actions) {
         let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
         let (from, to) = self.scale.range();
@@ -222,6 +252,7 @@ impl DopeSheet<'_> {
         let is_now = |time: f64| (time - playback.time()).abs() < 0.5 * frame;
         let mut last = f32::NEG_INFINITY;
         let times: Vec<f64> = row.times(self.session, from, to);
+        self.holds(ui, row, &times, rect);
         // NaN for a single key, which has no limit then.
         let ends = times.first().zip(times.last());
         let mean_gap = ends.map_or(0.0, |(first, last)| self.scale.x(*last) - self.scale.x(*first))

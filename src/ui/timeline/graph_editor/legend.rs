@@ -15,7 +15,7 @@ use crate::ui::labels;
 use crate::ui::timeline::context_menu;
 use crate::ui::timeline::rows::{self, ROW, TimelineAreas, VALUES};
 use crate::ui::timeline::value_scale::{Lanes, ValueKind};
-use crate::ui::widgets::{AXES, text};
+use crate::ui::widgets::AXES;
 
 /// Width in points of one colour beside a name, and of a letter x, y or z in its colour.
 const SWATCH: f32 = 10.0;
@@ -158,7 +158,7 @@ fn channel_name(
     let unit = ui.painter().text(right, Align2::RIGHT_CENTER, unit, font.clone(), weak);
     let has_axes = colours.len() == AXES.len();
     let swatch = if has_axes { LETTER } else { SWATCH };
-    let name = text::capitalized(&labels::channel_of_joint(*channel));
+    let name = labels::channel_alone(session, *channel);
     let width = ui.painter().layout_no_wrap(name.clone(), font.clone(), colour).size().x;
     let most = unit.left() - 8.0 - swatch * colours.len() as f32;
     let beside = rect.with_min_x(rect.left() + indent - 10.0).with_max_x(most + 4.0);

@@ -4,7 +4,8 @@ mod legend;
 mod mouse;
 
 use egui::{
-    Color32, Id, PointerButton, Rect, Response, Role, Sense, Ui, UiBuilder, Vec2b, WidgetInfo,
+    Align2, Color32, Id, PointerButton, Rect, Response, Role, Sense, TextStyle, Ui, UiBuilder,
+    Vec2b, WidgetInfo, pos2,
 };
 use egui_plot::{Line, LineStyle, PlotBounds, PlotPoints, Points};
 
@@ -15,7 +16,7 @@ use super::value_scale::{self, ChannelCurve, Lanes, ValueKind, ValueScales};
 use super::{context_menu, ruler};
 use crate::document::Channel;
 use crate::session::{Actions, Session};
-use crate::ui::widgets::plot;
+use crate::ui::widgets::{AXES, plot};
 use crate::ui::{labels, style};
 use legend::LegendEntry;
 use mouse::GraphView;
@@ -60,6 +61,7 @@ pub(in crate::ui) fn ui(
     let metres = session.document().metres_per_unit();
     value_scale::axes(ui, scales, areas.keys, metres, &curves);
     plots(ui, scale, areas.keys, &curves, scales);
+    letters(ui, scale, areas.keys, &curves, scales);
     let graph = GraphView { session, scale, area: areas.keys, scales, curves: &curves };
     mouse::paint(ui, &graph);
 
@@ -204,6 +206,45 @@ fn times(scale: TimeScale) -> Vec<f64> {
     let step = f64::from(GRAIN) / scale.points_per_second();
     let count = ((to - from) / step).ceil().clamp(2.0, 10_000.0) as usize;
     (0..=count).map(|index| from + (to - from) * index as f64 / count as f64).collect()
+}
+
+/// Writes x, y and z on the three curves of a channel that has a lane of its own, where the curves are farthest
+/// apart and no key is near.
+fn letters(ui: &Ui, scale: TimeScale, area: Rect, curves: &[ChannelCurve], scales: ValueScales) {
+    // Least distance of a letter from another, and from a key and the ends of the lane, in points.
+    const APART: f32 = 14.0;
+    const FROM_KEYS: f32 = 32.0;
+    let font = TextStyle::Small.resolve(ui.style());
+    for kind in scales.lanes().kinds() {
+        let lane = scales.lanes().lane(kind, area);
+        let of_kind = curves.iter().filter(|curve| curve.kind == kind).collect::<Vec<_>>();
+        let [one, two, three] = of_kind[..] else { continue };
+        if one.channel != two.channel || one.channel != three.channel {
+            continue;
+        }
+        let curves = [one, two, three];
+        let keys = || curves.into_iter().flat_map(|curve| &curve.knots);
+        let is_free = |x: f32| {
+            let near = |key: f64| (scale.x(key) - x).abs() < FROM_KEYS;
+            lane.x_range().shrink(FROM_KEYS).contains(x) && !keys().any(|key| near(key[0]))
+        };
+        let gap = |at: usize| {
+            let mut heights = curves.map(|curve| scales.y(kind, curve.line[at][1], area));
+            heights.sort_unstable_by(f32::total_cmp);
+            (heights[1] - heights[0]).min(heights[2] - heights[1])
+        };
+        let count = curves.map(|curve| curve.line.len()).into_iter().min().unwrap_or(0);
+        let places = (0..count).filter(|at| is_free(scale.x(one.line[*at][0])));
+        let best = places.map(|at| (gap(at), at)).max_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, at)) = best.filter(|(gap, _)| *gap > APART) else { continue };
+        for curve in curves {
+            let [time, value] = curve.line[at];
+            let centre = pos2(scale.x(time), scales.y(kind, value, area));
+            ui.painter().circle_filled(centre, 0.5 * APART, ui.visuals().extreme_bg_color);
+            let letter = AXES[curve.axis];
+            ui.painter().text(centre, Align2::CENTER_CENTER, letter, font.clone(), curve.colour);
+        }
+    }
 }
 
 /// Draws the curves, each in the lane of its unit.
