@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Takes pictures from the program itself: those of docs/guide.md and docs/kinematics.md in
-# docs/pictures, and those of the examples in assets/pictures. With names of examples, only theirs.
+# docs/pictures, those of the examples in assets/pictures, and README's figure. With names of examples,
+# only theirs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=scripts/setup.sh
@@ -34,6 +35,7 @@ main() {
     picture_of_scene circle elbow-circle
     picture_of_scene limits limits
     picture_of_scene globe globe
+    figure_of_readme
     printf 'The pictures are in %s\n' "$pictures"
 }
 
@@ -115,14 +117,14 @@ come_closer() {
         pulled-apart | out-of-reach) part=0.62 ;;
         inside-* | too-few-iterations) part=0.75 ;;
         locked) part=0.9 ;;
-        degenerate) part=0.42 to=(-0.1 0 0) ;; # four of the five
+        degenerate) part=0.62 to=(0 -0.1 0) ;;
         snake) part=0.6 to=(0.55 0 0.75) ;;
         walk) part=0.68 to=(0 0 "$(awk "BEGIN { print 1.41 * ($3 - 1) }")") ;; # metres in a second
         human) part=0.88 ;;
-        wheel) part=0.9 ;;
+        wheel) part=0.66 to=(0 0.16 0) ;;
         tadpoles) part=0.8 to=(-0.04 0 0.05) ;;
         reaching-down) part=0.8 ;;
-        looking-at-the-hand) part=1.35 to=(0 -0.24 0) ;;
+        looking-at-the-hand) part=0.95 to=(0 -0.06 0) ;;
     esac
     python3 - "$2" "$part" "${to[@]}" <<'END'
 import json, sys
@@ -146,6 +148,31 @@ press() {
 picture_of_scene() {
     "$program" render "assets/tour/$2.json" --size 1280x800 -o "$pictures/$1.full.png"
     shrink "$1"
+}
+
+# The walk in its skin and with its bones, and the skins of a twisted forearm, side by side.
+figure_of_readme() {
+    local frames around=grid_xz,ground,shadow
+    frames=$(mktemp -d)
+    nearer walk 0.62 "skin,$around" >"$frames/skin.json"
+    nearer walk 0.62 "skin,bones,$around" >"$frames/bones.json"
+    nearer candy-wrapper 1 "skin,compare_skinning,wireframe,labels,$around" >"$frames/twisted.json"
+    "$program" render "$frames/skin.json" --time 1 --size 360x480 -o "$frames/0.png"
+    "$program" render "$frames/bones.json" --time 1 --size 360x480 -o "$frames/1.png"
+    "$program" render "$frames/twisted.json" --time 2 --size 540x480 -o "$frames/2.png"
+    convert "$frames"/[0-2].png +append +repage -strip assets/figure.png
+    rm -r "$frames"
+}
+
+# nearer NAME PART OVERLAYS: prints the example with these overlays, and its camera at a part of its
+# distance.
+nearer() {
+    "$program" examples "$1" | python3 -c '
+import json, sys
+document = json.load(sys.stdin)
+document["camera"]["distance"] *= float(sys.argv[1])
+document["overlays"] = sys.argv[2].split(",")
+json.dump(document, sys.stdout)' "$2" "$3"
 }
 
 # Colours of a palette make the files a third as large.

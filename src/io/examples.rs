@@ -59,12 +59,22 @@ impl ExampleGroup {
     /// All groups, in the order in which they are listed.
     pub const ALL: [Self; 4] = [Self::Basics, Self::WhyNot, Self::InsideSolver, Self::HardCases];
 
+    /// One sentence on what its examples have in common.
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::Basics => "Rigs to pose and motions to play, the simplest first.",
+            Self::WhyNot => "Targets that are not reached, and what stops each of them.",
+            Self::InsideSolver => "One step of a solver, taken apart.",
+            Self::HardCases => "Poses and sizes at which IK jumps or loses precision.",
+        }
+    }
+
     /// Name on screen.
     pub fn title(self) -> &'static str {
         match self {
             Self::Basics => "Scenes",
-            Self::WhyNot => "Why not reached",
-            Self::InsideSolver => "Inside a solver",
+            Self::WhyNot => "Unreached targets",
+            Self::InsideSolver => "Solver steps",
             Self::HardCases => "Hard cases",
         }
     }
@@ -89,103 +99,73 @@ impl Example {
     /// All examples, in the order in which they are listed.
     pub const ALL: [Self; 35] = examples! {
         Basics in "" {
-            "arm", "Arm" => "Two limbs and a hand: drag the hand, and a formula finds the elbow.";
+            "arm", "Arm" => "Drag the hand: a formula finds the elbow.";
+            "keyframes", "Keyframes" => "The hand of an arm moves along a curve through six keys.";
+            "table", "Table" => "A hand rests on a table while its shoulder moves.";
+            "human", "Human" => "Drag hands, feet or pelvis, and the rest of the body follows.";
+            "walk", "Walk" => "Each foot stays where it steps while the body moves on.";
+            "reaching-down", "Reaching down" =>
+                "A squat: hands, gaze and balance are given, the body follows.";
+            "looking-at-the-hand", "Looking at the hand" =>
+                "Neck and head turn to the hand; press Space to stop, then drag it.";
+            "wheel", "Two hands on a wheel" =>
+                "The hands hold a wheel that turns: their targets are on the wheel.";
+            "snake", "Snake" => "Drag the circle at the head: 24 joints follow its path.";
+            "tadpoles", "Tadpoles" =>
+                "Heads swim after targets or the mouse, and their tails follow.";
             "two-targets", "Two targets on a Y" =>
                 "A tree with two branches, each with a target of its own.";
-            "human", "Human" =>
-                "Hands and feet stay at their targets while the pelvis is dragged, and the head looks at \
-                 a point.";
-            "walk", "Walk" =>
-                "Feet stand at their targets while the pelvis moves on, and the arms swing by FK.";
-            "reaching-down", "Reaching down" =>
-                "A squat to the floor: only the hands with their rotations, the gaze and the balance are \
-                 given.";
-            "looking-at-the-hand", "Looking at the hand" =>
-                "Neck and head turn to the hand, wherever it goes; press Space to stop, and drag it.";
-            "wheel", "Two hands on a wheel" =>
-                "A figure whose hands hold a wheel that turns: their targets are on the wheel.";
-            "candy-wrapper", "Candy wrapper" =>
-                "A forearm that is twisted by 180°, its skin blended in three ways: watch the area of \
-                 the middle.";
-            "table", "Table" => "An arm whose hand rests on a table while its shoulder moves.";
-            "snake", "Snake" =>
-                "Drag the circle at the head across the floor: 24 joints follow its path.";
-            "tadpoles", "Tadpoles" =>
-                "Five heads swim after moving targets, and their tails follow their paths; switch \
-                 on Follow the mouse.";
-            "ten-joints", "Ten-joint chain" =>
-                "A chain with one target, to watch the solvers at work.";
+            "ten-joints", "Ten-joint chain" => "A chain with one target, to watch solvers at work.";
             "jumping-chain", "Jumping chain" =>
-                "A chain follows its target smoothly; the thin figure shows what each frame would do by \
-                 itself: it jumps.";
-            "keyframes", "Keyframes" =>
-                "An arm whose hand goes along a spline through six keys.";
-            "degenerate", "Degenerate cases" =>
-                "What breaks careless solvers: a bone without length, a target at the root, a straight \
-                 chain, a mirror.";
+                "A smooth chain, beside one that jumps from frame to frame.";
+            "candy-wrapper", "Twisted forearm" =>
+                "Three ways to twist a skin by 180°: one narrows like a candy wrapper.";
         }
         WhyNot in "why/" {
             "out-of-reach", "Out of reach" =>
-                "The target is farther away than the bones are long; the note beside it offers \
-                 what would help.";
+                "The bones are too short for the target; a note offers remedies.";
             "at-a-limit", "At a limit" =>
-                "The shin cannot bend far enough for the target; the note says by how much its \
-                 limit must be widened.";
-            "locked", "Locked" =>
-                "A locked joint keeps the chain from its target, which it would reach if that \
-                 joint could turn.";
+                "The shin would have to bend past its limit; a note says how far.";
+            "locked", "Locked" => "A locked joint keeps the chain from its target.";
             "pulled-apart", "Pulled apart" =>
-                "Two targets are too far apart for the two arms of a Y: each can be reached alone, \
-                 not both.";
+                "Two targets too far apart: each can be reached alone, not both.";
             "gimbal-lock", "Gimbal lock" =>
-                "At y = 90° two of a joint's angles turn about one axis, and none turns towards \
-                 the target.";
+                "At y = 90° two angles turn about one axis, none to the target.";
             "too-few-iterations", "Too few iterations" =>
-                "The solver stops after 20 iterations, while the tip is still coming nearer.";
+                "The solver stops after 20 iterations, before the tip is there.";
         }
         InsideSolver in "inside/" {
             "inside-dls", "Inside damped least squares" =>
-                "One iteration, part by part: the columns of the Jacobian, its ellipsoid and what \
-                 the damping leaves of it, and the step; Shift . shows the next part.";
+                "Jacobian, ellipsoid, damping, step: part by part (next: Shift .).";
             "inside-ccd", "Inside CCD" =>
-                "One iteration, part by part: each joint in turn swings the tip towards the \
-                 target; Shift . shows the next part.";
+                "Joint by joint, the tip swings to the target (next: Shift .).";
             "inside-fabrik", "Inside FABRIK" =>
-                "One iteration, part by part: the points go to the target and then back to the \
-                 root; Shift . shows the next part.";
+                "The points go to the target and back to the root (next: Shift .).";
         }
         HardCases in "hard/" {
             "through-the-root", "Target through the root" =>
-                "The target goes straight through the shoulder: the hand comes no nearer than 100 \
-                 and jumps to the other side; limbs of equal length take the jump away.";
+                "The target goes through the shoulder: the hand jumps across.";
             "straight-up-and-down", "Straight up and down" =>
-                "The hand goes around through straight up and straight down, where the Limb's \
-                 elbow does not know its side and jumps; the Stereographic reference takes the \
-                 jumps away.";
+                "The elbow jumps straight up and down; not with Stereographic.";
             "along-the-pole", "Along the pole" =>
-                "The hand crosses the line to the pole, and the elbow that points at it flips \
-                 over; the Stereographic reference takes the flip away.";
+                "The hand crosses the line to the pole, and the elbow flips over.";
             "exactly-straight", "Exactly straight" =>
-                "The target is exactly as far away as the arm is long: it is reached, and turning \
-                 the Socket twist leaves the elbow where it is.";
+                "The target is exactly as far away as the arm is long.";
             "just-past-straight", "Just past straight" =>
-                "The target leaves the arm's reach and comes back, and the elbow snaps where the \
-                 arm is straight; a softness of 0.1 takes the snap away.";
+                "The elbow snaps where the arm is straight; softness takes it away.";
             "equal-bones-folded", "Equal bones folded" =>
-                "The target goes through the shoulder of two equal limbs: they fold up completely, \
-                 it is reached all the way, and nothing jumps.";
+                "Two equal limbs fold up completely, and nothing jumps.";
             "thousand-to-one", "One bone a thousand times the other" =>
-                "A forearm of 0.3 on an upper arm of 300, small as its joints: the hand goes once \
-                 around the elbow and stays at its target.";
+                "A forearm of 0.3 on an upper arm of 300 stays at its target.";
             "far-root", "Root a million units away" =>
-                "The shoulder is a million units away, where f32 positions are 1/16 apart: the \
-                 limbs keep their lengths within that rounding.";
+                "The limbs keep their lengths where f32 positions are 1/16 apart.";
             "tiny", "Tiny arm" =>
-                "An arm a thousandth of a unit long, which moves as the large ones do.";
-            "huge", "Huge arm" => "An arm a million units long, which moves as the small ones do.";
+                "An arm a thousandth of a unit long, which moves as large ones do.";
+            "huge", "Huge arm" => "An arm a million units long, which moves as small ones do.";
+            "degenerate", "Degenerate chains" =>
+                "A bone without length, a target at the root, a mirror.";
             "mirrored", "Mirrored" =>
-                "Two bones in a mirror, where turning left is turning right: the hand is at its \
-                 target all the same; press R and Space, and it follows.";
+                "Two bones in a mirror, where left is right: the target is reached.";
         }
     };
 

@@ -53,14 +53,14 @@ fn a_picture_tells_what_its_example_shows_and_opens_it() {
         bench.move_to(pos2(2.0, 2.0));
         bench.settle();
         assert!(bench.says("Point at a picture"));
-        let picture = bench.rect(Role::Button, "Two targets on a Y");
+        let picture = bench.rect(Role::Button, "Human");
         bench.move_to(picture.center());
         bench.settle();
-        assert!(bench.says("A tree with two branches"));
+        assert!(bench.says("Drag hands, feet or pelvis"));
         bench.click_at(picture.center());
         bench.settle();
         assert!(!is_open(&bench));
-        assert!(bench.session().skeleton().find("left_3").is_some(), "it is open");
+        assert!(bench.session().skeleton().find("left_forearm").is_some(), "it is open");
     }
 }
 

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{
     Align, Align2, Color32, ColorImage, CornerRadius, FontId, Id, Label, Layout, Rect, Response,
-    Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle, TextureHandle, TextureOptions, Ui,
-    UiBuilder, Vec2, WidgetInfo, pos2, vec2,
+    Role, ScrollArea, Sense, Stroke, StrokeKind, TextureHandle, TextureOptions, Ui, UiBuilder,
+    Vec2, WidgetInfo, pos2, vec2,
 };
 use image::{DynamicImage, ImageFormat, RgbImage};
 
@@ -20,8 +20,8 @@ const WIDTHS: [f32; 2] = [192.0, 240.0];
 const HEIGHT: f32 = 0.625;
 /// Height of the title below a picture, and below that of the sentence about the picture.
 const TITLE: f32 = 24.0;
-const LINES: usize = 3;
-const LINE: f32 = 16.0;
+const LINES: usize = 2;
+const LINE: f32 = 17.0;
 const SENTENCE: f32 = LINE * LINES as f32;
 const GAP: f32 = 12.0;
 /// Room for the bar of the area that scrolls.
@@ -29,7 +29,7 @@ const BAR: f32 = 12.0;
 const MOST_COLUMNS: usize = 6;
 const MOST_ROWS: f32 = 5.0;
 /// Height of the window without the pictures.
-const FRAME: f32 = 104.0;
+const FRAME: f32 = 134.0;
 /// Number of pictures that are decoded in one frame of the window: more would be felt.
 const DECODED_AT_ONCE: usize = 2;
 
@@ -55,18 +55,12 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
     ui.set_width(pictures_width + bar);
     let tabs: Vec<_> =
         groups().map(|it| (it, it.title(), "Show the examples of this group")).collect();
-    let chosen = ui.horizontal(|ui| {
-        let chosen = widgets::tabs(ui, group, &tabs);
-        if columns > 3 {
-            let right = Layout::right_to_left(Align::Center);
-            ui.with_layout(right, |ui| {
-                ui.weak("Point at a picture to see it move, click to open it")
-            });
-        }
-        chosen
-    });
-    actions.extend(chosen.inner.map(|it| ShellAction::OpenDialog(Dialog::Examples(it))));
-    ui.add_space(4.0);
+    let chosen = widgets::tabs(ui, group, &tabs);
+    actions.extend(chosen.map(|it| ShellAction::OpenDialog(Dialog::Examples(it))));
+    ui.add_space(3.0);
+    let about = format!("{} Point at a picture to see it move, click to open it.", group.about());
+    ui.add(Label::new(about).truncate());
+    ui.add_space(6.0);
     let mut pictures = Pictures::kept(ui);
     pictures.decode_some(ui, &examples);
     let area = ScrollArea::vertical().id_salt(group.title());
@@ -111,19 +105,17 @@ fn card(ui: &mut Ui, example: &Example, size: Vec2, pictures: &mut Pictures) -> 
     };
     painter.rect_stroke(picture, rounding, edge, StrokeKind::Inside);
     let colour = visuals.strong_text_color();
-    let at = pos2(rect.left() + 2.0, picture.bottom() + 0.5 * TITLE + 1.0);
-    let font = TextStyle::Body.resolve(ui.style());
-    painter.text(at, Align2::LEFT_CENTER, example.title, font, colour);
+    let at = pos2(rect.left(), picture.bottom() + 0.5 * TITLE + 1.0);
+    painter.text(at, Align2::LEFT_CENTER, example.title, FontId::proportional(15.5), colour);
     let below = rect.with_min_y(picture.bottom() + TITLE - 1.0);
-    say(ui, below.shrink2(vec2(2.0, 0.0)), example.sentence, is_chosen);
+    say(ui, below, example.sentence);
     card
 }
 
 /// Says what an example shows, in as many lines as there is room for.
-fn say(ui: &mut Ui, rect: Rect, sentence: &str, is_chosen: bool) {
-    let visuals = ui.visuals();
-    let colour = if is_chosen { visuals.text_color() } else { visuals.weak_text_color() };
-    let font = FontId::proportional(12.5);
+fn say(ui: &mut Ui, rect: Rect, sentence: &str) {
+    let colour = ui.visuals().text_color();
+    let font = FontId::proportional(13.0);
     let format = TextFormat { line_height: Some(LINE), ..TextFormat::simple(font, colour) };
     let mut job = LayoutJob::single_section(sentence.to_owned(), format);
     job.wrap.max_width = rect.width();
