@@ -121,7 +121,7 @@ come_closer() {
         snake) part=0.6 to=(0.55 0 0.75) ;;
         walk) part=0.68 to=(0 0 "$(awk "BEGIN { print 1.41 * ($3 - 1) }")") ;; # metres in a second
         human) part=0.88 ;;
-        wheel) part=0.66 to=(0 0.16 0) ;;
+        wheel) part=0.8 to=(0 0.05 0) ;;
         tadpoles) part=0.8 to=(-0.04 0 0.05) ;;
         reaching-down) part=0.8 ;;
         looking-at-the-hand) part=0.95 to=(0 -0.06 0) ;;

@@ -109,7 +109,7 @@ impl Palette {
         // which would draw more attention than the figure.
         let plain = match skin.past {
             true => self.guide.mixed(self.sky_bottom, 0.1),
-            false => self.accent.mixed(self.joint, 0.25),
+            false => self.accent.mixed(self.joint, 0.35),
         };
         plain.with_opacity(OPACITY * skin.opacity)
     }
@@ -195,7 +195,7 @@ impl Palette {
 }
 
 fn ramp(hex: [u32; Palette::GAINS]) -> [Colour; Palette::GAINS] {
-    const OPACITY: [f32; Palette::GAINS] = [0.08, 0.12, 0.16, 0.2, 0.25];
+    const OPACITY: [f32; Palette::GAINS] = [0.12, 0.18, 0.24, 0.3, 0.37];
     std::array::from_fn(|step| Colour::rgb(hex[step]).with_opacity(OPACITY[step]))
 }
 

@@ -206,11 +206,14 @@ impl TriangleDrawing {
                 [-1.0, 1.0]
                     .map(|side| Place { at: elbow + vec2(side * out, up), away: vec2(side, 0.0) })
             });
+        let above = [8.0, 26.0, 34.0].map(|up| Place { at: elbow - below * up, away: -below });
+        let others = at_elbow.into_iter().chain(beside_it.concat());
         // Nothing but the arc is below the middle joint of a flat triangle, and the label has to be apart
         // from that of the distance.
-        let above = [8.0, 26.0].map(|up| Place { at: elbow - below * up, away: -below });
-        let above = above.into_iter().filter(|_| self.is_flat());
-        let at_elbow: Vec<_> = above.chain(at_elbow).chain(beside_it.concat()).collect();
+        let at_elbow: Vec<_> = match self.is_flat() {
+            true => above.into_iter().chain(others).collect(),
+            false => others.chain(above).collect(),
+        };
         let at_middle = format!("{} φ", capital(self.words.middle));
         labels.write(&at_middle, self.accent, LimbFigure::ElbowAngle, &at_elbow);
         if self.is_flat() {

@@ -35,7 +35,7 @@ pub(in crate::ui) fn globe_legend(ui: &mut Ui, middle: &str) {
     let summary = "Gain: elbow degrees per degree of the Pointer, 0 to 8 and more";
     let (palette, end) = (style::palette(ui), Palette::MAX_GAIN.ln_1p());
     // As clear as the globe, which is clearer in the middle than at its rim.
-    const RIM: f32 = 2.0;
+    const RIM: f32 = 1.6;
     let colour = |place: f32| {
         let colour = palette.gain((place * end).exp_m1());
         style::colour(colour.with_opacity((RIM * colour.channels()[3]).min(1.0)))
