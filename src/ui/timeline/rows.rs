@@ -208,21 +208,6 @@ impl DopeSheetRow {
         all
     }
 
-    /// True if no channel of the row changes between two neighbouring times of its keys.
-    pub fn is_held(self, session: &Session, [from, to]: [f64; 2]) -> bool {
-        /// Of the largest component: what rounding may change.
-        const ROUNDING: f32 = 1e-5;
-        // Enough times for a cubic curve, which is level at most twice.
-        let times = [0.25, 0.5, 0.75, 1.0].map(|part| from + part * (to - from));
-        self.tracks(session).into_iter().all(|(_, track)| {
-            track.at(from).is_none_or(|start| {
-                let most = ROUNDING * start.abs().max_element();
-                let held = |time| track.at(time).is_some_and(|it| it.abs_diff_eq(start, most));
-                times.into_iter().all(held)
-            })
-        })
-    }
-
     /// The row's keys at a time in seconds.
     pub fn keys(self, session: &Session, time: f64) -> Vec<Key> {
         let tracks = self.tracks(session).into_iter();
@@ -232,7 +217,7 @@ impl DopeSheetRow {
 
     /// The channels of the row that have keys. That of one channel is looked up: a selection box over
     /// many rows asks for it at each of its keys.
-    fn tracks(self, session: &Session) -> Vec<(Channel, &Spline<Vec3>)> {
+    pub fn tracks(self, session: &Session) -> Vec<(Channel, &Spline<Vec3>)> {
         let keys = &session.document().keys;
         match self {
             Self::All { .. } => keys.tracks().collect(),
@@ -256,6 +241,21 @@ impl DopeSheetRow {
             Self::All { .. } => KeysEdit::keyed_channels(session.shown()).collect(),
         }
     }
+}
+
+/// True if no track changes between two neighbouring times of their keys.
+pub(super) fn are_held(tracks: &[(Channel, &Spline<Vec3>)], [from, to]: [f64; 2]) -> bool {
+    /// Of the largest component: what rounding may change.
+    const ROUNDING: f32 = 1e-5;
+    // Enough times for a cubic curve, which is level at most twice.
+    let times = [0.25, 0.5, 0.75, 1.0].map(|part| from + part * (to - from));
+    tracks.iter().all(|(_, track)| {
+        track.at(from).is_none_or(|start| {
+            let most = ROUNDING * start.abs().max_element();
+            let held = |time| track.at(time).is_some_and(|it| it.abs_diff_eq(start, most));
+            times.into_iter().all(held)
+        })
+    })
 }
 
 fn times(track: &Spline<Vec3>, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
@@ -338,7 +338,7 @@ mod tests {
             for pair in row.times(&session, 0.0, 2.0).windows(2) {
                 let [from, to] = [pair[0], pair[1]];
                 let is_equal = tracks.iter().all(|(_, track)| track.get(from) == track.get(to));
-                let is_held = row.is_held(&session, [from, to]);
+                let is_held = are_held(&tracks, [from, to]);
                 assert!(is_equal || !is_held, "{name} from {from} s to {to} s");
                 held += usize::from(is_held);
             }

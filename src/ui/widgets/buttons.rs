@@ -100,7 +100,9 @@ impl<'a> IconButton<'a> {
         let visuals = ui.style().interact(&response);
         let (accent, painter) = (style::accent(ui), ui.painter());
         let (stroke, icon) = match self.on {
-            Some(true) => (Stroke::new(1.0, accent), accent),
+            Some(true) => {
+                (Stroke::new(if response.has_focus() { 2.0 } else { 1.0 }, accent), accent)
+            }
             _ => (visuals.bg_stroke, visuals.fg_stroke.color),
         };
         let (fill, inside) = (visuals.weak_bg_fill, egui::StrokeKind::Inside);

@@ -214,8 +214,8 @@ impl DopeSheet<'_> {
         response.on_hover_text(format!("Select {shown}; Shift or Ctrl adds it to the selection"));
     }
 
-    /// Draws a bar between keys of a row, but that of all keys, where its channels stay as they are, and
-    /// writes that into a long one.
+    /// Draws a bar between two keys of a row where its channels are held, and writes so into a long bar.
+    /// The row of all keys has none.
     fn holds(&self, ui: &Ui, row: DopeSheetRow, times: &[f64], rect: Rect) {
         const HEIGHT: f32 = 3.0;
         // Least length of a bar, and of one with a word, in points.
@@ -226,9 +226,10 @@ impl DopeSheet<'_> {
         }
         let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
         let weak = ui.visuals().weak_text_color();
+        let tracks = row.tracks(self.session);
         for pair in times.windows(2) {
             let [from, to] = [pair[0], pair[1]].map(|time| self.scale.x(time));
-            if to - from < LEAST || !row.is_held(self.session, [pair[0], pair[1]]) {
+            if to - from < LEAST || !rows::are_held(&tracks, [pair[0], pair[1]]) {
                 continue;
             }
             let middle = pos2(0.5 * (from + to), rect.center().y);
