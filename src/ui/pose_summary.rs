@@ -83,7 +83,9 @@ fn describe_skeleton(session: &Session) -> String {
         1 => format!("1 {one}"),
         _ => format!("{count} {one}s"),
     };
-    let mut line = vec![count(joints.len(), "joint"), count(rig.targets.len(), "target")];
+    let off = rig.targets.iter().filter(|target| !target.is_posing()).count();
+    let off = if off == 0 { String::new() } else { format!(", {off} off") };
+    let mut line = vec![count(joints.len(), "joint"), count(rig.targets.len(), "target") + &off];
     line.extend(describe_solver(session));
     match session.selection().active().and_then(|joint| joints.get(joint.index())) {
         Some(joint) => line.insert(

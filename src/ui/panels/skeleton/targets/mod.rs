@@ -91,17 +91,16 @@ fn row(
 }
 
 /// Shows the distance from a tip to its target, or else the rotation that is missing; nothing for a
-/// target that is reached.
+/// target that is reached. A target that poses nothing is off, wherever it is.
 fn what_is_missing(ui: &mut Ui, report: &TargetReport, tolerance: f32) {
-    let distance = text::short(report.error);
-    if report.error > tolerance {
-        let missing = ui.label(RichText::new(distance).monospace());
+    if matches!(report.outcome, TargetOutcome::Off) {
+        ui.weak("off").on_hover_text("The joint angles alone pose it");
+    } else if report.error > tolerance {
+        let missing = ui.label(RichText::new(text::short(report.error)).monospace());
         missing.on_hover_text("Distance from tip to target");
     } else if let Some(angle) = report.rotation_error.filter(|_| report.misses_rotation()) {
         let missing = ui.label(RichText::new(text::degrees(angle)).monospace());
         missing.on_hover_text("Rotation that is missing");
-    } else if matches!(report.outcome, TargetOutcome::Off) {
-        ui.weak("off").on_hover_text("The joint angles alone pose it");
     }
 }
 
