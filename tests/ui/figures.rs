@@ -25,7 +25,7 @@ const ROWS: [(&str, LimbFigure); 18] = [
     ("Upper d 1", LimbFigure::Upper),
     ("Lower d 2", LimbFigure::Lower),
     ("Along h e", LimbFigure::Along),
-    ("Out o e", LimbFigure::Out),
+    ("Height o e", LimbFigure::Out),
     ("Shoulder theta e", LimbFigure::ShoulderAngle),
     ("Elbow angle phi", LimbFigure::ElbowAngle),
     ("Cursor c", LimbFigure::Cursor),

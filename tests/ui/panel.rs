@@ -253,7 +253,7 @@ fn the_explain_panel_names_the_quantities_and_shows_their_values() {
         "Sum L",
         "Difference delta",
         "Along h e",
-        "Out o e",
+        "Height o e",
         "Shoulder theta e",
         "Elbow angle phi",
     ] {

@@ -312,12 +312,6 @@ pub(super) fn point(limb: &ShownLimb, point: Vec3) -> String {
     format!("({x}, {y}, {z})")
 }
 
-/// A word that begins with a capital letter.
-pub(super) fn capital(word: &str) -> String {
-    let (first, rest) = word.split_at_checked(1).unwrap_or((word, ""));
-    first.to_uppercase() + rest
-}
-
 /// Returns 0 for a value that rounds to 0 at one decimal, so that 0 has no sign; otherwise the
 /// value.
 fn tidy(value: f32) -> f32 {

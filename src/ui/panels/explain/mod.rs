@@ -17,11 +17,12 @@ use crate::kinematics::two_bone::Reach;
 use crate::rig::LimbPart;
 use crate::session::{Actions, LimbFigure, SelectAction, Session, ShownLimb, TourState};
 use crate::ui::widgets::Choice;
+use crate::ui::widgets::text::capitalized;
 use crate::ui::{labels, pose_summary, widgets};
 use crate::words::LimbWords;
 pub(in crate::ui) use twist_references::globe_legend;
 
-use figures::{Lit, capital, degrees, figure_colour, length, point};
+use figures::{Lit, degrees, figure_colour, length, point};
 
 /// The triangle of a limb, a sentence on its pose, and its angles and lengths. Returns the figure
 /// under the mouse.
@@ -36,7 +37,7 @@ pub(in crate::ui) fn triangle(
     sentence(ui, session, limb);
     widgets::folded_section(ui, "Hierarchy", |ui| hierarchy(ui, session, limb, lit, actions));
     widgets::folded_section(ui, "Pointer", |ui| pointer::ui(ui, limb, lit));
-    let title = format!("{} triangle", capital(limb.words.middle));
+    let title = format!("{} triangle", capitalized(limb.words.middle));
     widgets::named_folded_section(ui, "triangle", &title, |ui| triangle::quantities(ui, limb, lit));
     widgets::folded_section(ui, "Law of cosines", |ui| triangle::law_of_cosines(ui, limb, lit));
     widgets::folded_section(ui, "Positions", |ui| triangle::positions(ui, limb, lit));

@@ -6,13 +6,12 @@ use egui_plot::{
     Text, VLine,
 };
 
-use super::figures::capital;
 use crate::document::TwistReferenceKind;
 use crate::kinematics::pop::{InputChange, PopCause};
 use crate::kinematics::soft_reach::SoftReach;
 use crate::session::{Actions, PopFix, PopSample, PopSampleKind, Pops, Session, ShownLimb, Spike};
 use crate::ui::style;
-use crate::ui::widgets::{self, plot};
+use crate::ui::widgets::{self, plot, text::capitalized};
 use crate::words::LimbWords;
 
 const HEIGHT: f32 = 140.0;
@@ -187,7 +186,7 @@ fn show(ui: &mut Ui, pops: &Pops, spikes: &[Spike], words: LimbWords) {
         [.., last] => format!("Pops: {}, the last one {}", spikes.len(), name(last.pop)),
     };
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
-    let middle = capital(words.middle);
+    let middle = capitalized(words.middle);
     response.on_hover_text(format!(
         "{middle} speed over Cursor speed per step; above the dashed line it pops"
     ));

@@ -10,14 +10,13 @@ use egui_plot::{
     Points, VLine,
 };
 
-use super::figures::capital;
 use crate::document::{LengthFormat, ShownLength};
 use crate::kinematics::soft_reach::{HandDistance, ReachLimits, SoftReach};
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::LimbFrames;
 use crate::session::ShownLimb;
 use crate::ui::style;
-use crate::ui::widgets::{plot, text};
+use crate::ui::widgets::{plot, text, text::capitalized};
 use crate::words::LimbWords;
 
 /// Draws the inner limit, the reachable range and the Cursor along a bar from the limb's base.
@@ -32,7 +31,7 @@ pub(in crate::ui) fn meter(ui: &mut Ui, limb: &ShownLimb) {
     let (what, distance) = if frames.uses_ik() {
         ("Cursor".to_owned(), frames.posed.cursor.length())
     } else {
-        (capital(limb.words.end), frames.pose().distance)
+        (capitalized(limb.words.end), frames.pose().distance)
     };
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());

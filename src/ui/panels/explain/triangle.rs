@@ -9,11 +9,12 @@ use egui::{
 use glam::Vec3;
 
 use super::figures::{
-    FigureLabels, FigureLine, FormulaRow, Lit, Place, arc, around, beside, capital, degrees,
-    formula, length, pair, point, table,
+    FigureLabels, FigureLine, FormulaRow, Lit, Place, arc, around, beside, degrees, formula,
+    length, pair, point, table,
 };
 use crate::session::{LimbFigure, ShownLimb};
 use crate::ui::style;
+use crate::ui::widgets::text::capitalized;
 use crate::words::LimbWords;
 
 const HEIGHT: f32 = 156.0;
@@ -197,7 +198,7 @@ impl TriangleDrawing {
         let left = vec2(-1.0, 0.0);
         let beside_it = Place { at: shoulder + left * 10.0, away: left };
         let in_angle: Vec<_> = in_angle.chain(beneath).chain([beside_it]).collect();
-        let at_base = format!("{} θ_e", capital(self.words.base));
+        let at_base = format!("{} θ_e", capitalized(self.words.base));
         labels.write(&at_base, self.accent, LimbFigure::ShoulderAngle, &in_angle);
         let (start, turn) = self.at_elbow();
         let at_elbow = around(elbow, ARC, start + 0.5 * turn);
@@ -214,13 +215,13 @@ impl TriangleDrawing {
             true => above.into_iter().chain(others).collect(),
             false => others.chain(above).collect(),
         };
-        let at_middle = format!("{} φ", capital(self.words.middle));
+        let at_middle = format!("{} φ", capitalized(self.words.middle));
         labels.write(&at_middle, self.accent, LimbFigure::ElbowAngle, &at_elbow);
         if self.is_flat() {
             return labels.written();
         }
         let heights = [beside(elbow, foot), beside(foot, elbow)].concat();
-        labels.write("Out o_e", self.weak, LimbFigure::Out, &heights);
+        labels.write("Height o_e", self.weak, LimbFigure::Out, &heights);
         let lengths = [0.5, 0.35, 0.65].map(|part| foot + (shoulder - foot) * part);
         let lengths =
             [4.0, 18.0].map(|down| lengths.map(|at| Place { at: at + below * down, away: below }));
@@ -256,7 +257,7 @@ pub(super) fn positions(ui: &mut Ui, limb: &ShownLimb, lit: &mut Lit) {
     let socket = "h_e along the Pointer and o_e away from it";
     let elbow =
         format!("x_e, y_e and z_e: the {middle} in Root space, turned there by Socket and Limb");
-    let names = ["{} in Socket", "{} e"].map(|name| name.replace("{}", &capital(middle)));
+    let names = ["{} in Socket", "{} e"].map(|name| name.replace("{}", &capitalized(middle)));
     let pointed = point(limb, limb.frames.pointed_at());
     pair(ui, lit, LimbFigure::Cursor, ["Cursor c", &cursor], pointed);
     pair(ui, lit, LimbFigure::Out, [&names[0], socket], point(limb, in_socket));
@@ -294,21 +295,21 @@ fn quantity_rows(limb: &ShownLimb) -> [FormulaRow; 8] {
             Some(LimbFigure::Along),
         ),
         row(
-            "Out o_e",
+            "Height o_e",
             "√((d_1 − h_e)(d_1 + h_e))",
             length(pose.out),
-            &format!("Distance of the {middle} from the Pointer: twice the triangle's area over D"),
+            &format!("Height of the {middle} above the Pointer: twice the triangle's area over D"),
             Some(LimbFigure::Out),
         ),
         row(
-            &format!("{} θ_e", capital(base)),
+            &format!("{} θ_e", capitalized(base)),
             "atan2(o_e, h_e)",
             degrees(pose.shoulder_angle()),
             &format!("Angle at the {base}, between Pointer and Upper limb"),
             Some(LimbFigure::ShoulderAngle),
         ),
         row(
-            &format!("{} angle φ", capital(middle)),
+            &format!("{} angle φ", capitalized(middle)),
             "",
             degrees(pose.elbow_angle()),
             &format!("Inner angle at the {middle}: 180° straight, 0° folded"),

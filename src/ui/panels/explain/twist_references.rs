@@ -1,11 +1,11 @@
 //! Comparison of the twist references: elbow rotation, gain, and holonomy.
 
-use super::figures::capital;
 use egui::{Align, Grid, Layout, RichText, Ui, vec2};
 
 use crate::document::{Overlay, TwistReferenceKind};
 use crate::scene::Palette;
 use crate::session::{Actions, Session, ShownLimb, TransportPath, ViewAction};
+use crate::ui::widgets::text::capitalized;
 use crate::ui::{glossary, labels, style, widgets};
 use crate::words::LimbWords;
 
@@ -31,7 +31,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, limb: &ShownLimb, action
 /// Shows the colour bar of the singularity globe, on a logarithmic scale of the gain. `middle` is
 /// the word for the middle joint of the limb.
 pub(in crate::ui) fn globe_legend(ui: &mut Ui, middle: &str) {
-    ui.label(format!("{} speed relative to the Pointer", capital(middle)));
+    ui.label(format!("How fast the {middle} swings"));
     let summary = "Gain: elbow degrees per degree of the Pointer, 0 to 8 and more";
     let (palette, end) = (style::palette(ui), Palette::MAX_GAIN.ln_1p());
     // As clear as the globe, which is clearer in the middle than at its rim.
@@ -52,7 +52,7 @@ fn table(ui: &mut Ui, limb: &ShownLimb, path: &TransportPath, actions: &mut Acti
     Grid::new("references").num_columns(3).spacing(vec2(10.0, 4.0)).show(ui, |ui| {
         glossary::term_label(ui, "Twist reference", "Twist reference", actions);
         let right = Layout::right_to_left(Align::Center);
-        ui.with_layout(right, |ui| ui.label(RichText::new(capital(middle)).weak()));
+        ui.with_layout(right, |ui| ui.label(RichText::new(capitalized(middle)).weak()));
         ui.with_layout(right, |ui| glossary::term_label(ui, "Gain", "Gain", actions));
         ui.end_row();
         for kind in TwistReferenceKind::ALL {
