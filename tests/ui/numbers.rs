@@ -99,13 +99,23 @@ fn showing_a_value_or_focusing_its_field_does_not_change_it() {
 #[test]
 fn the_socket_twist_wraps() {
     let mut bench = Bench::new();
-    for (typed, shown) in
-        [("370", 10.0), ("-10", 350.0), ("725", 5.0), ("360", 0.0), ("90°", 90.0), ("-360", 0.0)]
-    {
+    for (typed, kept, shown) in [
+        ("370", 10.0, 10.0),
+        ("-10", 350.0, -10.0),
+        ("725", 5.0, 5.0),
+        ("360", 0.0, 0.0),
+        ("90°", 90.0, 90.0),
+        ("190", 190.0, -170.0),
+        ("-180", 180.0, 180.0),
+        ("-360", 0.0, 0.0),
+    ] {
         bench.enter("Socket twist", typed);
         let twist = value(&bench.session().arm(), "Socket twist");
-        assert!((twist - shown).abs() < 1e-3, "{typed} gives {twist}");
+        assert!((twist - kept).abs() < 1e-3, "{typed} gives {twist}");
         assert!((0.0..TAU).contains(&bench.session().arm().twist));
+        let number = bench.node(Role::Slider, "Socket twist").accesskit_node().numeric_value();
+        let off = number.expect("a number") - shown;
+        assert!(off.abs() < 1e-3, "{typed} is shown {off}° away from {shown}");
     }
     bench.focus(Role::Slider, "Socket twist");
     bench.key(Key::ArrowLeft);

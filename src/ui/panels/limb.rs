@@ -397,8 +397,8 @@ fn socket_twist(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
         label: "Twist",
         tooltip: "Turn the elbow about the Pointer; the hand stays",
         term: Some("Socket twist"),
-        value: limb.settings.twist.rem_euclid(TAU).to_degrees(),
-        range: (0.0, TAU.to_degrees()),
+        value: signed_degrees(limb.settings.twist),
+        range: (-180.0, 180.0),
         default: 0.0,
         unit: "°",
         step: 1.0,
@@ -413,6 +413,12 @@ fn socket_twist(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     if limb.settings.reference == TwistReferenceKind::Pole {
         pole(ui, limb, actions);
     }
+}
+
+/// An angle in radians as degrees above −180 and at most 180.
+fn signed_degrees(angle: f32) -> f32 {
+    let degrees = angle.rem_euclid(TAU).to_degrees();
+    if degrees > 180.0 { degrees - 360.0 } else { degrees }
 }
 
 /// Shows the combo box of the twist references, for the title row of the section, with a label if
