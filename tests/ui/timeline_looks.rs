@@ -72,7 +72,7 @@ fn the_timeline_looks_as_it_did() {
     }
 }
 
-const CONTROLS: [(Role, &str); 17] = [
+const CONTROLS: [(Role, &str); 14] = [
     (Role::Button, "To start"),
     (Role::Button, "Previous key"),
     (Role::Button, "Play"),
@@ -83,10 +83,7 @@ const CONTROLS: [(Role, &str); 17] = [
     (Role::SpinButton, "Frame"),
     (Role::Button, "Key"),
     (Role::Button, "Auto-key"),
-    (Role::SpinButton, "Speed"),
-    (Role::ComboBox, "Frame rate"),
-    (Role::SpinButton, "Start"),
-    (Role::SpinButton, "End"),
+    (Role::Button, "Playback"),
     (Role::Button, "Graph editor"),
     (Role::Button, "Hide timeline"),
     (Role::Slider, "Timeline ruler"),

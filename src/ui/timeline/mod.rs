@@ -56,7 +56,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ruler::auto_key_note(ui, session, scale, areas.ruler, actions);
     ruler::ground(ui, scale, timeline, wheeled);
     ruler::grid(ui, scale, timeline, areas.keys);
-    let ruler = ruler::ui(ui, session, scale, areas.ruler, actions);
+    let ruler = ruler::ui(ui, session, scale, (areas.ruler, true), actions);
     if curves {
         graph_editor::ui(ui, session, scale, &areas, &ruler, actions);
     } else {

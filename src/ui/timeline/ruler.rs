@@ -25,12 +25,12 @@ pub(in crate::ui) fn id() -> Id {
     Id::unique("timeline ruler")
 }
 
-/// Shows the ruler; a drag on it scrubs.
+/// Shows the ruler, with lines or empty; a drag on it scrubs.
 pub(in crate::ui) fn ui(
     ui: &Ui,
     session: &Session,
     scale: TimeScale,
-    rect: Rect,
+    (rect, has_lines): (Rect, bool),
     actions: &mut Actions,
 ) -> Response {
     let response = ui.interact(rect, id(), Sense::click_and_drag());
@@ -39,7 +39,9 @@ pub(in crate::ui) fn ui(
     let timeline = session.document().timeline;
     let step = 1.0 / timeline.frame_rate;
     widgets::set_range(ui, response.id, timeline.start..=timeline.end, step);
-    paint(ui, scale, timeline, rect);
+    if has_lines {
+        paint(ui, scale, timeline, rect);
+    }
     if response.has_focus() {
         let stroke = Stroke::new(2.0, style::accent(ui));
         ui.painter().hline(rect.x_range(), rect.bottom() - 1.0, stroke);

@@ -1,20 +1,15 @@
-//! The transport bar: playback and time; while the timeline is open also keying, speed, frame rate
-//! and range, while it is closed a ruler.
+//! The transport bar: playback and time; while the timeline is open also keying and the settings of
+//! playback, while it is closed a ruler.
 
-use egui::{ComboBox, Rect, RichText, Ui, vec2};
+use egui::{Button, Grid, Popup, PopupCloseBehavior, Rect, RichText, Ui, vec2};
 
 use super::time_scale::TimeScale;
 use super::{keyboard, rows, ruler};
 use crate::document::Timeline;
 use crate::session::{Action, Actions, KeysEdit, PlaybackAction, Session, ViewAction};
-use crate::ui::style;
 use crate::ui::widgets::{self, DragNumber, Icon, IconButton, text};
 
-/// Width of the bar in points up to which numbers have no labels.
-const ROOMY: f32 = 1180.0;
 const GAP: f32 = 8.0;
-/// Space between groups where numbers have no labels.
-const NARROW_GAP: f32 = 2.0;
 /// Height of the bar in points.
 pub(in crate::ui) const HEIGHT: f32 = 28.0;
 
@@ -43,12 +38,18 @@ pub(in crate::ui) fn slim(ui: &mut Ui, session: &Session, actions: &mut Actions)
     });
 }
 
-/// Shows the whole range of the timeline as a ruler, with the playhead.
+/// Shows the whole range of the timeline as a ruler, with the playhead; while nothing moves, how to
+/// begin.
 fn rail(ui: &mut Ui, session: &Session, rect: Rect, actions: &mut Actions) {
     let timeline = session.document().timeline;
     let scale = TimeScale::showing(rect.x_range(), timeline.start, timeline.end);
     ruler::ground(ui, scale, timeline, rect);
-    ruler::ui(ui, session, scale, rect, actions);
+    let is_empty = nothing_to_play(session).is_some();
+    ruler::ui(ui, session, scale, (rect, !is_empty), actions);
+    if is_empty {
+        let note = "Nothing moves yet: press K here and at another time";
+        ui.put(rect, egui::Label::new(RichText::new(note).weak()).selectable(false));
+    }
     ruler::playhead(ui, session, scale, rect, rect.bottom());
     ruler::auto_key_note(ui, session, scale, rect, actions);
     keyboard::focused(ui, session, actions);
@@ -56,22 +57,17 @@ fn rail(ui: &mut Ui, session: &Session, rect: Rect, actions: &mut Actions) {
 
 /// Shows the bar of the open timeline.
 pub(in crate::ui) fn whole(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let roomy = ui.available_width() > ROOMY;
-    let gap = if roomy { GAP } else { NARROW_GAP };
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.set_height(HEIGHT);
         buttons(ui, session, actions);
-        ui.add_space(gap);
-        time(ui, session, roomy, actions);
-        ui.add_space(gap);
+        ui.add_space(GAP);
+        time(ui, session, actions);
+        ui.add_space(GAP);
         keying(ui, session, actions);
-        ui.add_space(gap);
-        pace(ui, session, roomy, actions);
-        ui.add_space(gap);
-        ends(ui, session, roomy, actions);
-        ui.add_space(gap);
+        ui.add_space(GAP);
         widgets::at_right(ui, |ui| {
+            settings(ui, session, actions);
             curves(ui, session, actions);
             let hide = ui.button("Hide").on_hover_text("Hide the keys");
             widgets::name(ui, &hide, "Hide timeline");
@@ -125,11 +121,13 @@ fn repeat(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn play(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    /// In points, the same for both names.
+    const WIDTH: f32 = 74.0;
     let playing = session.playback().is_playing();
     let (icon, name) = if playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
     let tooltip = "Play or pause (Space)";
     let button = IconButton::new(icon, name, tooltip, nothing_to_play(session));
-    if (IconButton { is_named: true, ..button }).show(ui) {
+    if (IconButton { named: Some(WIDTH), ..button }).show(ui) {
         actions.push(PlaybackAction::Play(!playing));
     }
 }
@@ -140,38 +138,30 @@ fn nothing_to_play(session: &Session) -> Option<&'static str> {
     (!can_play).then_some("Nothing to play: add keys at two times (K) or move a target")
 }
 
-/// Distance of a label from the field before it, in points, so that it names the one after it.
-const BEFORE_LABEL: f32 = 6.0;
-
-/// A number field with a label.
+/// A number field.
 struct TimeField<'a> {
     name: &'a str,
-    /// Label, hidden in narrow windows.
-    label: &'a str,
     value: f64,
     unit: &'a str,
     speed: f32,
-    width: f32,
     digits: usize,
     tooltip: &'a str,
 }
 
 impl TimeField<'_> {
+    /// In points.
+    const WIDTH: f32 = 74.0;
+
     fn show<A: Into<Action>>(
         self,
         ui: &mut Ui,
-        roomy: bool,
         is_editing: bool,
         actions: &mut Actions,
         set: impl Fn(f64) -> A,
     ) {
-        if roomy && !self.label.is_empty() {
-            ui.add_space(BEFORE_LABEL);
-            ui.add(egui::Label::new(RichText::new(self.label).weak()).selectable(false));
-        }
-        let Self { name, value, unit, speed, width, digits, .. } = self;
+        let Self { name, value, unit, speed, digits, .. } = self;
         let format = &|value| text::fixed(value, digits);
-        let number = DragNumber { name, value, unit, speed, width, format };
+        let number = DragNumber { name, value, unit, speed, width: Self::WIDTH, format };
         number.show(ui, is_editing, actions, set).on_hover_text(self.tooltip);
     }
 
@@ -180,33 +170,35 @@ impl TimeField<'_> {
     fn show_free<A: Into<Action>>(
         self,
         ui: &mut Ui,
-        roomy: bool,
         actions: &mut Actions,
         set: impl Fn(f64) -> A,
     ) {
         let mut own = Actions::new();
-        self.show(ui, roomy, true, &mut own, set);
+        self.show(ui, true, &mut own, set);
         own.retain(|action| !matches!(action, Action::Transaction(_)));
         actions.extend(own);
     }
 }
 
-fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
+fn label(ui: &mut Ui, text: &str) {
+    ui.add(egui::Label::new(RichText::new(text).weak()).selectable(false));
+}
+
+fn time(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     seconds(ui, session, actions);
+    ui.add_space(GAP);
+    label(ui, "Frame");
     let timeline = session.document().timeline;
     let frame = TimeField {
         name: "Frame",
-        label: "Frame",
         value: timeline.number(session.playback().time()).round() + 0.0,
-        // Without its label the number needs a unit.
-        unit: if roomy { "" } else { " f" },
+        unit: "",
         speed: 0.25,
-        width: 74.0,
         digits: 0,
         tooltip: "Set the time in frames: drag or type",
     };
     let set = |frame: f64| PlaybackAction::SetTime(timeline.time_of_number(frame.round()));
-    frame.show_free(ui, roomy, actions, set);
+    frame.show_free(ui, actions, set);
 }
 
 fn seconds(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -217,15 +209,13 @@ fn seconds(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         |time| PlaybackAction::SetTime(if is_dragged { timeline.snapped(time) } else { time });
     let seconds = TimeField {
         name: "Time",
-        label: "",
         value: session.playback().time(),
         unit: " s",
         speed: 0.25 / rate as f32,
-        width: 70.0,
         digits: 2,
         tooltip: "Set the time in seconds (left and right arrow in the timeline)",
     };
-    seconds.show_free(ui, false, actions, set);
+    seconds.show_free(ui, actions, set);
 }
 
 fn keying(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -236,85 +226,100 @@ fn keying(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     if widgets::button(ui, "Key", tooltip, why) {
         actions.push(KeysEdit::Key(channels));
     }
+    auto_key(ui, session, actions);
+}
+
+fn auto_key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    /// In points.
+    const WIDTH: f32 = 88.0;
     let on = session.playback().is_auto_key();
-    let accent = style::accent(ui);
-    let text = RichText::new("Auto-key");
-    let button = if on {
-        let text = text.color(ui.visuals().panel_fill);
-        egui::Button::selectable(true, text).fill(accent)
-    } else {
-        egui::Button::selectable(false, text).frame_when_inactive(true)
-    };
     let tooltip = if on {
         "Stop adding keys with every edit"
     } else {
         "Add keys at the playhead with every edit"
     };
-    if ui.add(button).on_hover_text(tooltip).clicked() {
+    let button = IconButton::new(Icon::Record, "Auto-key", tooltip, None);
+    if (IconButton { on: Some(on), named: Some(WIDTH), ..button }).show(ui) {
         actions.push(PlaybackAction::SetAutoKey(!on));
     }
 }
 
-fn pace(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
+/// Shows the button that opens speed, range and frame rate.
+fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let button = ui.button("Playback").on_hover_text("Set speed, start, end and frame rate");
+    let popup = Popup::from_toggle_button_response(&button);
+    popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
+        Grid::new("playback").num_columns(2).spacing(vec2(GAP, GAP)).show(ui, |ui| {
+            label(ui, "Speed");
+            speed(ui, session, actions);
+            ui.end_row();
+            ends(ui, session, actions);
+        });
+        ui.add_space(GAP);
+        label(ui, "Frame rate");
+        frame_rate(ui, session, actions);
+    });
+}
+
+fn speed(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let speed = TimeField {
         name: "Speed",
-        label: "",
         value: session.playback().speed(),
         unit: "×",
         speed: 0.01,
-        width: 52.0,
         digits: 2,
         tooltip: "Set the playback speed, 0.1 to 4",
     };
-    speed.show_free(ui, roomy, actions, PlaybackAction::SetSpeed);
-    frame_rate(ui, session, actions);
+    speed.show_free(ui, actions, PlaybackAction::SetSpeed);
 }
 
 fn frame_rate(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    const COLUMNS: usize = 3;
+    /// In points.
+    const WIDTH: f32 = 80.0;
     let timeline = session.document().timeline;
     let name = |rate: f64| format!("{} fps", (rate * 1000.0).round() / 1000.0);
-    let combo = ComboBox::from_id_salt("frame rate")
-        .selected_text(name(timeline.frame_rate))
-        .width(72.0)
-        .truncate();
     let mut rates = Timeline::FRAME_RATES.to_vec();
     if !rates.contains(&timeline.frame_rate) {
         rates.push(timeline.frame_rate);
     }
-    let response = combo.show_ui(ui, |ui| {
-        for frame_rate in rates {
-            let chosen = frame_rate == timeline.frame_rate;
-            if ui.selectable_label(chosen, name(frame_rate)).clicked() && !chosen {
-                actions.push(KeysEdit::SetTimeline(Timeline { frame_rate, ..timeline }));
+    Grid::new("frame rates").num_columns(COLUMNS).spacing(vec2(4.0, 4.0)).show(ui, |ui| {
+        for row in rates.chunks(COLUMNS) {
+            for frame_rate in row.iter().copied() {
+                let chosen = frame_rate == timeline.frame_rate;
+                let button = Button::selectable(chosen, name(frame_rate));
+                let button = ui.add(button.min_size(vec2(WIDTH, 0.0)).frame_when_inactive(true));
+                let button = button.on_hover_text("Set frames per second, for snapping and export");
+                if button.clicked() && !chosen {
+                    actions.push(KeysEdit::SetTimeline(Timeline { frame_rate, ..timeline }));
+                }
             }
+            ui.end_row();
         }
     });
-    let response = response.response;
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Frame rate"));
-    response.on_hover_text("Set frames per second, for snapping and export");
 }
 
-fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
+fn ends(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let timeline = session.document().timeline;
     let field = |name, value, tooltip| TimeField {
         name,
-        label: name,
         value,
         unit: " s",
         speed: 0.02,
-        width: 70.0,
         digits: 2,
         tooltip,
     };
     let is_editing = session.history().is_editing();
+    label(ui, "Start");
     let start = field("Start", timeline.start, "Set the start of the timeline");
-    start.show(ui, roomy, is_editing, actions, |start| {
+    start.show(ui, is_editing, actions, |start| {
         KeysEdit::SetTimeline(Timeline { start, ..timeline })
     });
+    ui.end_row();
+    label(ui, "End");
     let end = field("End", timeline.end, "Set the end of the timeline");
-    end.show(ui, roomy, is_editing, actions, |end| {
-        KeysEdit::SetTimeline(Timeline { end, ..timeline })
-    });
+    end.show(ui, is_editing, actions, |end| KeysEdit::SetTimeline(Timeline { end, ..timeline }));
+    ui.end_row();
 }
 
 fn curves(ui: &mut Ui, session: &Session, actions: &mut Actions) {

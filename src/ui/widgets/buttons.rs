@@ -53,6 +53,7 @@ pub(in crate::ui) enum Icon {
     PreviousKey,
     NextKey,
     Loop,
+    Record,
     Close,
 }
 
@@ -64,19 +65,17 @@ pub(in crate::ui) struct IconButton<'a> {
     /// State of a toggle; `None` for other buttons.
     pub on: Option<bool>,
     pub disabled: Option<&'a str>,
-    /// True if the name stands beside the icon.
-    pub is_named: bool,
+    /// Width in points with the name beside the icon; `None` for the icon alone.
+    pub named: Option<f32>,
 }
 
 impl<'a> IconButton<'a> {
     /// Size in points.
     pub const SIZE: Vec2 = vec2(28.0, 24.0);
-    /// Width in points of a button with its name, the same for all names.
-    const NAMED: f32 = 74.0;
 
     /// A button that is not a toggle.
     pub fn new(icon: Icon, name: &'a str, tooltip: &'a str, disabled: Option<&'a str>) -> Self {
-        Self { icon, name, tooltip, on: None, disabled, is_named: false }
+        Self { icon, name, tooltip, on: None, disabled, named: None }
     }
 
     /// Shows the button and returns whether it was pressed.
@@ -90,7 +89,7 @@ impl<'a> IconButton<'a> {
     }
 
     fn button(&self, ui: &mut Ui) -> Response {
-        let width = if self.is_named { Self::NAMED } else { Self::SIZE.x };
+        let width = self.named.unwrap_or(Self::SIZE.x);
         let (rect, response) = ui.allocate_exact_size(vec2(width, Self::SIZE.y), Sense::click());
         let enabled = ui.is_enabled();
         response.widget_info(|| match self.on {
@@ -108,20 +107,20 @@ impl<'a> IconButton<'a> {
         let (fill, inside) = (visuals.weak_bg_fill, egui::StrokeKind::Inside);
         painter.rect(rect, visuals.corner_radius, fill, stroke, inside);
         let mut centre = rect.center();
-        if self.is_named {
+        if self.named.is_some() {
             let font = TextStyle::Button.resolve(ui.style());
             let name = painter.layout_no_wrap(self.name.to_owned(), font, icon);
             let at = Align2::CENTER_CENTER.anchor_size(centre + vec2(8.0, 0.0), name.size());
             centre.x = at.left() - 10.0;
             painter.galley(at.min, name, icon);
         }
-        self.icon.paint(painter, centre, icon);
+        self.icon.paint(painter, centre, icon, self.on == Some(true));
         response
     }
 }
 
 impl Icon {
-    fn paint(self, painter: &Painter, centre: Pos2, colour: Color32) {
+    fn paint(self, painter: &Painter, centre: Pos2, colour: Color32, is_on: bool) {
         let at = |x: f32, y: f32| centre + vec2(x, y);
         let shape = |points: &[(f32, f32)]| {
             let points = points.iter().map(|(x, y)| at(*x, *y)).collect();
@@ -152,6 +151,8 @@ impl Icon {
                 shape(&[(-1.5 * side, 0.0), (-8.0 * side, -5.0), (-8.0 * side, 5.0)]);
                 painter.add(diamond(at(4.0 * side, 0.0), 4.5, colour, Stroke::NONE));
             }
+            Self::Record if is_on => _ = painter.circle_filled(centre, 5.0, colour),
+            Self::Record => _ = painter.circle_stroke(centre, 4.5, thin),
             Self::Close => cross(at(0.0, 0.0), 4.5),
             Self::Loop => {
                 let place = |turn: f32| at(5.5 * turn.cos(), 5.5 * turn.sin());

@@ -213,7 +213,7 @@ fn times(scale: TimeScale) -> Vec<f64> {
 fn letters(ui: &Ui, scale: TimeScale, area: Rect, curves: &[ChannelCurve], scales: ValueScales) {
     // Least distance of a letter from another, and from a key and the ends of the lane, in points.
     const APART: f32 = 14.0;
-    const FROM_KEYS: f32 = 32.0;
+    const FROM_KEYS: f32 = mouse::HANDLE + APART;
     let font = TextStyle::Small.resolve(ui.style());
     for kind in scales.lanes().kinds() {
         let lane = scales.lanes().lane(kind, area);
