@@ -57,7 +57,7 @@ picture_of_window() {
 # Pictures of an example in both themes: frames in six columns, evenly spaced in time; one frame if it
 # stands still.
 picture_of_example() {
-    local name=$1 frames quality=(-quality 76 -strip) file all time nth theme
+    local name=$1 frames quality=(-quality 76 -strip) file all time nth theme contrast
     frames=$(mktemp -d)
     file=$frames/example.json
     "$program" examples "$name" | without_names >"$frames/given.json"
@@ -67,10 +67,16 @@ picture_of_example() {
     all=("$frames"/*.png)
     rm "$frames"/*.png
     for theme in dark light; do
+        contrast=()
+        if [[ $theme == light ]]; then
+            # So small, figures on a light ground look pale.
+            contrast=(-sigmoidal-contrast "3,80%")
+        fi
         if ((${#all[@]} == 1)); then
             come_closer "$name" "$file" 1 >"$frames/closer.json"
             "$program" render "$frames/closer.json" --theme "$theme" --size 576x360 -o "$frames/0.png"
-            convert "$frames/0.png" -resize 288x180 "${quality[@]}" "$example_pictures/$theme/$name.jpg"
+            convert "$frames/0.png" -resize 288x180 "${contrast[@]}" "${quality[@]}" \
+                "$example_pictures/$theme/$name.jpg"
             continue
         fi
         for nth in {10..33}; do
@@ -79,8 +85,8 @@ picture_of_example() {
             "$program" render "$frames/closer.json" --theme "$theme" --time "$time" --size 576x360 \
                 -o "$frames/$nth.png"
         done
-        montage "$frames"/[1-3]*.png -tile 6x4 -geometry 288x180+0+0 "${quality[@]}" \
-            "$example_pictures/$theme/$name.jpg"
+        montage "$frames"/[1-3]*.png -tile 6x4 -geometry 288x180+0+0 "${contrast[@]}" \
+            "${quality[@]}" "$example_pictures/$theme/$name.jpg"
     done
     rm -r "$frames"
 }
