@@ -147,30 +147,6 @@ fn a_drag_of_a_handle_turns_the_tangent_and_alt_turns_one_side_of_it() {
 }
 
 #[test]
-fn the_handle_of_a_key_that_is_not_selected_selects_the_key_and_turns_its_tangent() {
-    let mut bench = graph();
-    assert!(bench.session().selection().keys().is_empty());
-    let handle = place(&bench, 3.0, 60.0) + vec2(40.0, 0.0);
-    bench.drag_and_drop(LEFT, handle, handle + vec2(0.0, 20.0));
-    bench.settle();
-    assert_eq!(bench.session().selection().keys(), [(channels::TWIST, 3.0)]);
-    assert!(keys(&bench)[1].slopes.is_some_and(|slopes| slopes.leaving.x < -0.01));
-}
-
-#[test]
-fn among_many_keys_only_the_selected_ones_have_handles() {
-    let mut bench = graph();
-    for frame in 160..200 {
-        let time = PlaybackAction::SetTime(f64::from(frame) / 30.0);
-        bench.apply([Action::from(time), KeysEdit::Key(vec![channels::TWIST]).into()]);
-    }
-    let handle = place(&bench, 3.0, 60.0) + vec2(40.0, 0.0);
-    bench.drag_and_drop(LEFT, handle, handle + vec2(0.0, 20.0));
-    bench.settle();
-    assert!(keys(&bench).iter().all(|key| key.slopes.is_none()));
-}
-
-#[test]
 fn the_context_menu_chooses_the_interpolation_of_the_selected_keys() {
     for interpolation in [Interpolation::Linear, Interpolation::Step] {
         let mut bench = graph();

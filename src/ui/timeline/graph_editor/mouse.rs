@@ -18,9 +18,7 @@ use crate::ui::{labels, style};
 /// Hit radius of a key or a handle, in points.
 const REACH: f32 = 8.0;
 /// Length of a tangent handle, in points.
-pub(in crate::ui::timeline) const HANDLE: f32 = 40.0;
-/// Number of keys on all curves up to which each has its handles: more would be a tangle.
-const FEW: usize = 32;
+const HANDLE: f32 = 40.0;
 
 /// The graph editor as it lies on screen.
 pub(in crate::ui::timeline) struct GraphView<'a> {
@@ -86,22 +84,17 @@ impl GraphView<'_> {
         nearest.map(|(curve, key, _)| (curve, key))
     }
 
-    /// The handles of the keys that are selected, or of those that are not if there are few: one
-    /// before each key with a cubic curve before it, and one after each key with a cubic curve after
-    /// it.
-    fn handles(&self, of_selected: bool) -> Vec<Handle<'_>> {
+    /// The handles of the selected keys: one before each key with a cubic curve before it, and one
+    /// after each key with a cubic curve after it.
+    fn handles(&self) -> Vec<Handle<'_>> {
         let selected = self.session.selection().keys();
-        let count = self.curves.iter().map(|curve| curve.knots.len()).sum::<usize>();
-        if !of_selected && count > FEW {
-            return Vec::new();
-        }
         let has_tangents = |curve: &&ChannelCurve| curve.channel.quantity() != Quantity::Switch;
         let of_curve = |curve| {
             let keys = self.keys(curve);
-            let is_shown = move |(knot, _): &(&Knot<Vec3>, Pos2)| {
-                selected.contains(&(curve.channel, knot.time)) == of_selected
-            };
-            keys.filter(is_shown).flat_map(move |(knot, from)| self.handles_of(curve, knot, from))
+            let is_selected =
+                |(knot, _): &(&Knot<Vec3>, Pos2)| selected.contains(&(curve.channel, knot.time));
+            keys.filter(is_selected)
+                .flat_map(move |(knot, from)| self.handles_of(curve, knot, from))
         };
         self.curves.iter().filter(has_tangents).flat_map(of_curve).collect()
     }
@@ -146,18 +139,13 @@ pub(in crate::ui::timeline) fn held_scales(ui: &Ui) -> Option<ValueScales> {
     }
 }
 
-/// Draws the selected keys and the handles.
+/// Draws the selected keys and their handles.
 pub(in crate::ui::timeline) fn paint(ui: &Ui, graph: &GraphView<'_>) {
     let painter = ui.painter().with_clip_rect(graph.area);
     let (accent, strong) = (style::accent(ui), ui.visuals().strong_text_color());
-    let weak = ui.visuals().weak_text_color().gamma_multiply(0.7);
-    for (of_selected, size, stroke) in
-        [(false, 2.5, Stroke::new(1.0, weak)), (true, 3.5, Stroke::new(1.5, accent))]
-    {
-        for handle in graph.handles(of_selected) {
-            painter.line_segment([handle.from, handle.at], Stroke::new(1.0, stroke.color));
-            painter.circle(handle.at, size, ui.visuals().panel_fill, stroke);
-        }
+    for handle in graph.handles() {
+        painter.line_segment([handle.from, handle.at], Stroke::new(1.0, accent));
+        painter.circle(handle.at, 3.5, ui.visuals().panel_fill, Stroke::new(1.5, accent));
     }
     let selected = graph.session.selection().keys();
     for curve in graph.curves {
@@ -186,12 +174,8 @@ pub(in crate::ui::timeline) fn press(
         match button {
             PointerButton::Primary => {
                 let adds = modifiers.shift || modifiers.command;
-                let press = Press { at: pos, adds };
-                if press_handle(ui, graph, pos, true).is_none()
-                    && !press_key(ui, graph, press, actions)
-                    && let Some(key) = press_handle(ui, graph, pos, false)
-                {
-                    actions.push(SelectAction::Keys(vec![key]));
+                if !press_handle(ui, graph, pos) {
+                    press_key(ui, graph, Press { at: pos, adds }, actions);
                 }
             }
             PointerButton::Secondary => {
@@ -206,25 +190,23 @@ pub(in crate::ui::timeline) fn press(
     }
 }
 
-/// Begins a drag of the nearest handle, of a selected key or of another, and returns its key; `None`
-/// without one there.
-fn press_handle(ui: &Ui, graph: &GraphView<'_>, at: Pos2, of_selected: bool) -> Option<Key> {
-    let handles = graph.handles(of_selected);
+fn press_handle(ui: &Ui, graph: &GraphView<'_>, at: Pos2) -> bool {
+    let handles = graph.handles();
     let off = |handle: &&Handle<'_>| handle.at.distance(at);
     let near = handles.iter().filter(|handle| off(handle) <= REACH);
-    let handle = near.min_by(|one, other| off(one).total_cmp(&off(other)))?;
+    let Some(handle) = near.min_by(|one, other| off(one).total_cmp(&off(other))) else {
+        return false;
+    };
     let Handle { curve, key, is_leaving, .. } = *handle;
     let drag = TangentDrag { key, value: graph.values(curve), is_leaving, moved: false };
     drag::set(ui, TimelineDrag::Tangent(drag));
-    Some(key)
+    true
 }
 
-/// Begins a drag of the nearest key; false without one there.
-fn press_key(ui: &Ui, graph: &GraphView<'_>, press: Press, actions: &mut Actions) -> bool {
-    let Some((curve, key)) = graph.key_at(press.at) else { return false };
+fn press_key(ui: &Ui, graph: &GraphView<'_>, press: Press, actions: &mut Actions) {
+    let Some((curve, key)) = graph.key_at(press.at) else { return };
     let values = Some(graph.values(curve));
     drag::press_keys(ui, graph.session, vec![key], key.1, press, values, actions);
-    true
 }
 
 /// Continues a drag of keys or of a handle until the release of the mouse button or Esc.
