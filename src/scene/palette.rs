@@ -104,7 +104,7 @@ impl Palette {
 
     /// See-through colour of an onion skin: the fainter, the farther it is from the playhead.
     pub(super) fn onion_skin(&self, skin: &OnionSkin) -> Colour {
-        const OPACITY: f32 = 0.24;
+        const OPACITY: f32 = 0.28;
         // Parts of the sky in the grey of the past, and of the joints' grey in the accent of the future,
         // which would draw more attention than the figure.
         let plain = match skin.past {
@@ -112,13 +112,6 @@ impl Palette {
             false => self.accent.mixed(self.joint, 0.35),
         };
         plain.with_opacity(OPACITY * skin.opacity)
-    }
-
-    /// Colour of a motion trail.
-    pub(super) fn trail(&self, is_past: bool) -> Colour {
-        // Part of the sky in the grey of the past.
-        const FADED: f32 = 0.55;
-        if is_past { self.guide.mixed(self.sky_bottom, FADED) } else { self.accent }
     }
 
     /// Opaque colour of the bones of an onion skin.
@@ -195,7 +188,7 @@ impl Palette {
 }
 
 fn ramp(hex: [u32; Palette::GAINS]) -> [Colour; Palette::GAINS] {
-    const OPACITY: [f32; Palette::GAINS] = [0.12, 0.18, 0.24, 0.3, 0.37];
+    const OPACITY: [f32; Palette::GAINS] = [0.06, 0.14, 0.26, 0.38, 0.48];
     std::array::from_fn(|step| Colour::rgb(hex[step]).with_opacity(OPACITY[step]))
 }
 

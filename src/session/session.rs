@@ -7,7 +7,7 @@ use super::inspections::{InspectionJob, Inspections};
 use super::limb::ShownLimb;
 use super::playback::Playback;
 use super::pops::CursorMove;
-use super::preferences::{PanelTab, Preferences};
+use super::preferences::Preferences;
 use super::reach_regions::ReachRegions;
 use super::selection::Selection;
 use super::shell::Shell;
@@ -222,10 +222,8 @@ impl Session {
     /// The limb of a figure that the open page is about.
     pub fn limb_of_page(&self) -> Option<&ShownLimb> {
         let preferences = self.preferences();
-        let is_about_limb =
-            matches!(preferences.tab, PanelTab::Triangle | PanelTab::Twist | PanelTab::Reach);
-        let is_figure = self.rig().sole_limb().is_none();
-        self.limb().filter(|_| is_figure && is_about_limb && preferences.explain)
+        let is_about_limb = preferences.explain && preferences.tab.is_of_limb();
+        self.limb().filter(|_| is_about_limb && self.rig().sole_limb().is_none())
     }
 
     /// The pose of the skeleton at the playhead, in world space.

@@ -91,10 +91,19 @@ fn picture(scene: &Scene, side: u32) -> RgbaImage {
     block_on(PictureRenderer::new(&gpu, side, side, 1.0).draw(scene)).expect("drawn")
 }
 
-/// The gains at a place of a picture in pixels: of the far side and of the near one if it is in front
-/// of the camera, each with its part of the opacity; `None` towards the rim, where the globe is denser.
-fn gains(scene: &Scene, at: Vec2, side: u32) -> Option<Vec<(f64, f64)>> {
+/// The far side of a globe, or the near one, at a place of a picture.
+struct GlobeSide {
+    gain: f64,
+    /// Opacity that is added to that of the gain's colour, and the part of both that is seen.
+    rim: f64,
+    share: f64,
+}
+
+/// The far side and, if it is in front of the camera, the near one at a place of a picture in pixels;
+/// `None` towards the rim, where lines are dense.
+fn sides(scene: &Scene, at: Vec2, side: u32) -> Option<Vec<GlobeSide>> {
     const NEAR_OPACITY: f64 = 0.45;
+    const RIM_OPACITY: f64 = 0.24;
     let globe = scene.globe?;
     let (radius, centre) = (f64::from(globe.radius), globe.centre.as_dvec3());
     let from_middle = at / side as f32 * 2.0 - 1.0;
@@ -108,7 +117,8 @@ fn gains(scene: &Scene, at: Vec2, side: u32) -> Option<Vec<(f64, f64)>> {
     let sides = [(middle + half, 1.0), (middle - half, NEAR_OPACITY)];
     let sides = sides.into_iter().take(1 + usize::from(near_is_seen));
     let gain = |along: f64| gain(globe.reference, (origin + direction * along) / radius);
-    Some(sides.map(|(along, share)| (gain(along), share)).collect())
+    let rim = RIM_OPACITY * (1.0 - half / radius).powi(5);
+    Some(sides.map(|(along, share)| GlobeSide { gain: gain(along), rim, share }).collect())
 }
 
 /// Expected colours of a pixel of the globe, if no line is near: the ramp's for the library's own gain
@@ -117,21 +127,21 @@ fn expected(scene: &Scene, (x, y): (u32, u32), side: u32, sky: [f64; 3]) -> Opti
     /// Pixels from a line, which reaches 1.15 pixels, within which it may be seen.
     const LINE: f64 = 1.6;
     let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-    let here = gains(scene, at, side)?;
+    let here = sides(scene, at, side)?;
     // The GPU takes the slope from either neighbour.
     let beside = [Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y];
-    let beside = beside.map(|by| gains(scene, at + by, side));
+    let beside = beside.map(|by| sides(scene, at + by, side));
     let mut colour = sky;
-    for (index, (gain, share)) in here.into_iter().enumerate() {
+    for (index, GlobeSide { gain, rim, share }) in here.into_iter().enumerate() {
         let level = gain.ln_1p();
         let step =
-            |of: &Option<Vec<(f64, f64)>>| Some((of.as_ref()?[index].0.ln_1p() - level).abs());
+            |of: &Option<Vec<GlobeSide>>| Some((of.as_ref()?[index].gain.ln_1p() - level).abs());
         let [right, left, below, above] = beside.each_ref().map(step);
         let steep = right?.max(left?) + below?.max(above?);
         let off = |line: f64| (level - line.ln_1p()).abs();
         [1.0, 2.0, 5.0].into_iter().all(|line| off(line) > LINE * steep).then_some(())?;
         let [r, g, b, a] = scene.palette.gain(gain as f32).channels().map(f64::from);
-        let a = a * share;
+        let a = (a + rim) * share;
         colour = [0, 1, 2].map(|channel| colour[channel] * (1.0 - a) + [r, g, b][channel] * a);
     }
     Some(colour)
@@ -246,7 +256,7 @@ fn every_singular_direction_is_marked_on_the_globe() {
         assert_eq!(marked.globe, Some(globe));
         let places: Vec<_> = directions.iter().map(|way| globe.centre + way * 100.0).collect();
         let balls: Vec<_> = marked.balls[before.0..].iter().map(|ball| ball.centre).collect();
-        let is_name = |label: &&Label| marked.text(label).starts_with("singular");
+        let is_name = |label: &&Label| marked.text(label).starts_with("elbow spins");
         let labels = marked.labels[before.1..].iter();
         let (names, numbers): (Vec<&Label>, Vec<&Label>) = labels.partition(is_name);
         let names: Vec<_> = names.iter().map(|label| label.at).collect();

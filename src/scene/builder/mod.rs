@@ -80,7 +80,7 @@ impl SceneBuilder {
         if let Some(limb) = ShownLimb::frames(posed, overlays.selection.last().copied()) {
             limb::add_guides(scene, &limb, overlays, display);
         }
-        add_trail(scene, &overlays.trail, posed.time(), reach);
+        add_trail(scene, &overlays.trail, reach);
         if display.shows(Overlay::Shadow) {
             add_shadow_of_trail(scene, &overlays.trail, reach);
         }
@@ -114,15 +114,14 @@ fn add_axes(scene: &mut Scene, reach: f32, has_body: bool) {
 }
 
 /// Adds the trail of the hand or the selected joint, with a dot for every frame, a ball for every
-/// key, and arrowheads between keys. What is past at a time in seconds is grey, as onion skins of the
-/// past are; what is far is faint.
-fn add_trail(scene: &mut Scene, trail: &Trail, now: f64, reach: f32) {
+/// key, and arrowheads between keys. What is far is faint.
+fn add_trail(scene: &mut Scene, trail: &Trail, reach: f32) {
     // Radii of a key, of a dot and of the tube between two dots, as fractions of the rig's reach.
     const KEY_RADIUS: f32 = 0.012;
     const DOT_RADIUS: f32 = 0.0045;
     const TUBE_RADIUS: f32 = 0.003;
     // Part of the sky in the colour of the farthest point.
-    const FADED: f32 = 0.6;
+    const FADED: f32 = 0.4;
     let palette = scene.palette;
     let view = scene.camera.projection(1.0);
     let depth = |at: Vec3| view.forward.dot(at - view.eye);
@@ -130,23 +129,23 @@ fn add_trail(scene: &mut Scene, trail: &Trail, now: f64, reach: f32) {
     let [near, far] = depths.fold([f32::INFINITY, f32::NEG_INFINITY], |[near, far], depth| {
         [near.min(depth), far.max(depth)]
     });
-    let colour = |time: f64, at: Vec3| {
+    let colour = |at: Vec3| {
         let part = if far > near { (depth(at) - near) / (far - near) } else { 0.0 };
-        palette.trail(time < now).mixed(palette.sky_bottom, FADED * part)
+        palette.accent.mixed(palette.sky_bottom, FADED * part)
     };
     let [key, dot, tube] = [KEY_RADIUS, DOT_RADIUS, TUBE_RADIUS].map(|part| part * reach);
     for ends in trail.points.windows(2).filter(|ends| ends[0].1 != ends[1].1) {
-        let [(time, from), (_, to)] = [ends[0], ends[1]];
-        scene.add_guide_solid(from, to, tube, tube, colour(time, from));
+        let [(_, from), (_, to)] = [ends[0], ends[1]];
+        scene.add_guide_solid(from, to, tube, tube, colour(from));
     }
     let dots = trail.points.iter();
-    let dots = dots.map(|(time, at)| Ball { centre: *at, radius: dot, colour: colour(*time, *at) });
+    let dots = dots.map(|(_, at)| Ball { centre: *at, radius: dot, colour: colour(*at) });
     scene.balls.extend(dots);
     let keys = trail.keys.iter();
     let keys = keys.map(|(_, at)| Ball { centre: *at, radius: key, colour: palette.accent });
     scene.balls.extend(keys);
     for keys in trail.keys.windows(2) {
-        add_arrowhead(scene, trail, [keys[0], keys[1]], now, reach);
+        add_arrowhead(scene, trail, [keys[0], keys[1]], reach);
     }
 }
 
@@ -174,7 +173,6 @@ fn add_arrowhead(
     scene: &mut Scene,
     trail: &Trail,
     [(start, from), (end, to)]: [(f64, Vec3); 2],
-    now: f64,
     reach: f32,
 ) {
     // Length and radius as fractions of the rig's reach, and least distance of the keys in lengths.
@@ -185,11 +183,11 @@ fn add_arrowhead(
     let middle = 0.5 * (start + end);
     let next = trail.points.partition_point(|(time, _)| *time <= middle);
     let (before, after) = trail.points.split_at(next);
-    let (Some((time, at)), Some((_, next))) = (before.last(), after.first()) else { return };
+    let (Some((_, at)), Some((_, next))) = (before.last(), after.first()) else { return };
     if let Some(along) = (*next - *at).try_normalize()
         && from.distance(to) > APART * length
     {
-        let colour = scene.palette.trail(*time < now);
+        let colour = scene.palette.accent;
         scene.add_guide_solid(*at, *at + along * length, RADIUS * reach, 0.0, colour);
     }
 }

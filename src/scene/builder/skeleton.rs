@@ -122,7 +122,7 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
     if let Some(skin) = skin {
         skin.add(scene, posed.skeleton(), overlays, display);
     }
-    for onion_skin in &overlays.onion_skins {
+    for (index, onion_skin) in overlays.onion_skins.iter().enumerate() {
         match (&skin, &onion_skin.skin) {
             (Some(skin), Some(pose)) => {
                 let colour = scene.palette.onion_skin(onion_skin);
@@ -133,7 +133,8 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
                 drawn.posed(&onion_skin.pose).add_onion_skin(scene, colour);
             }
         }
-        add_name_of(scene, onion_skin, ABOVE_HEAD * drawn.reach);
+        let last = if onion_skin.past { 0 } else { overlays.onion_skins.len() - 1 };
+        add_name_of(scene, onion_skin, index == last, ABOVE_HEAD * drawn.reach);
     }
     let all = display.shows(Overlay::FkPose);
     if all || rig.targets.iter().any(Target::is_blended) {
@@ -229,13 +230,14 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, children: &mut V
 /// Distance of a name from the highest tip of an onion skin, as a fraction of the figure's reach.
 const ABOVE_HEAD: f32 = 0.07;
 
-/// Says above an onion skin which frame it is.
-fn add_name_of(scene: &mut Scene, onion_skin: &OnionSkin, clearance: f32) {
+/// Says above an onion skin which frame it is; above the last one in its direction with the unit.
+fn add_name_of(scene: &mut Scene, onion_skin: &OnionSkin, is_last: bool, clearance: f32) {
     let tips = onion_skin.pose.ids().map(|joint| onion_skin.pose.tip(joint));
     let Some(highest) = tips.max_by(|one, other| one.y.total_cmp(&other.y)) else { return };
     let sign = if onion_skin.past { '−' } else { '+' };
     let label = Label::new(highest, clearance, LabelSide::Over, scene.palette.text);
-    scene.add_label(label, format_args!("{sign}{} frames", onion_skin.frames));
+    let unit = if is_last { " frames" } else { "" };
+    scene.add_label(label, format_args!("{sign}{}{unit}", onion_skin.frames));
 }
 
 /// Sets `hands` to the hand that each joint belongs to: below a joint with three or more children, if
