@@ -123,17 +123,23 @@ impl TranslateHandles {
         ((none - mouse.distance(self.centre)) / (none - full)).clamp(0.0, 1.0)
     }
 
+    /// Draws an arrow with a rim in the colour of the letter, so that it is seen before a limb of its own
+    /// colour.
     fn paint_arrow(&self, painter: &Painter, axis: usize, colour: Color32, letter: Color32) {
         const HEAD: f32 = 12.0;
         const DISC: f32 = 7.0;
+        const RIM: f32 = 1.0;
         let arrow = self.arrows[axis];
         let direction = arrow.normalized();
         let tip = self.centre + arrow;
         let neck = tip - direction * HEAD;
         let start = self.centre + direction * FREE_RADIUS;
-        painter.line_segment([start, neck], Stroke::new(2.5, colour));
+        let rim = letter.gamma_multiply(0.75 * f32::from(colour.a()) / 255.0);
         let aside = direction.rot90() * HEAD * 0.42;
         let head = vec![tip, neck + aside, neck - aside];
+        painter.line_segment([start, neck], Stroke::new(2.5 + 2.0 * RIM, rim));
+        painter.add(Shape::convex_polygon(head.clone(), rim, Stroke::new(2.0 * RIM, rim)));
+        painter.line_segment([start, neck], Stroke::new(2.5, colour));
         painter.add(Shape::convex_polygon(head, colour, Stroke::NONE));
         // On a disc, so that the letter can be read before a limb.
         let beyond = tip + direction * (DISC + 3.0);

@@ -65,6 +65,8 @@ struct Mark {
     grip: Grip,
     at: Pos2,
     enabled: bool,
+    /// True for the target of the limb that the open page is about.
+    is_of_page: bool,
 }
 
 impl Gizmo {
@@ -158,7 +160,8 @@ impl Gizmo {
         }
         let strong = ui.visuals().strong_text_color();
         for mark in &self.marks {
-            let colour = if mark.enabled { strong } else { strong.gamma_multiply(0.4) };
+            let colour = if mark.is_of_page { style::accent(ui) } else { strong };
+            let colour = if mark.enabled { colour } else { colour.gamma_multiply(0.4) };
             circle(painter, ui, mark.at, TARGET, Stroke::new(1.5, faded(mark.grip, colour)));
         }
         for (joint, bone) in self.bones.iter().enumerate() {
@@ -229,17 +232,19 @@ fn aims(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
     let mark = |target: &Target| {
         let at = screen.place(target.aim_point_in_world(pose)?)?;
         let grip = Grip::Aim(target.joint, PointHandle::Free);
-        Some(Mark { grip, at, enabled: target.is_posing() })
+        Some(Mark { grip, at, enabled: target.is_posing(), is_of_page: false })
     };
     session.rig().targets.iter().filter_map(mark).collect()
 }
 
 fn targets(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
     let reports = &session.posed().evaluated_skeleton().targets;
+    let of_page = session.limb_of_page().map(|limb| limb.target);
     let mark = |(target, report): (&Target, &TargetReport)| {
         let at = screen.place(report.position)?;
         let grip = Grip::Target(target.joint, PointHandle::Free);
-        Some(Mark { grip, at, enabled: target.enabled })
+        let is_of_page = of_page == Some(target.joint);
+        Some(Mark { grip, at, enabled: target.enabled, is_of_page })
     };
     let rig = session.rig();
     // A figure that is one limb has handles at its target instead.
@@ -262,7 +267,8 @@ fn twist_ring(screen: &ScreenProjection, session: &Session) -> Option<TwistRing>
 fn heads(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
     let mark = |head: JointId| {
         let at = screen.place(session.posed().evaluated_skeleton().fk.base(head))?;
-        Some(Mark { grip: Grip::Head(head, PointHandle::Free), at, enabled: true })
+        let grip = Grip::Head(head, PointHandle::Free);
+        Some(Mark { grip, at, enabled: true, is_of_page: false })
     };
     Grip::draggable_heads(session.rig()).filter_map(mark).collect()
 }
