@@ -78,7 +78,7 @@ fn the_transport_bar_is_slim_until_there_are_keys_or_the_timeline_is_opened() {
     let mut bench = first_start();
     let roomy = bench.viewport().height();
     assert!(bench.shows(Role::Button, "Timeline") && !bench.shows(Role::Button, "Auto-key"));
-    assert!(bench.says("Nothing moves yet: press K here and at another time"));
+    assert!(bench.says("No animation yet: add keys in the timeline"));
     bench.click(Role::Button, "Timeline");
     assert!(bench.shows(Role::Button, "Auto-key"));
     assert!(bench.viewport().height() < roomy - 80.0);

@@ -33,7 +33,7 @@ pub(in crate::ui) fn transport(ui: &mut Ui, session: &Session, actions: &mut Act
 /// rows, and for curves to be read.
 pub(in crate::ui) fn height(ui: &Ui, session: &Session) -> f32 {
     const ROWS: (usize, usize) = (4, 7);
-    const OF_CURVES: usize = 9;
+    const OF_CURVES: usize = 10;
     let rows = match session.preferences().curves {
         true => OF_CURVES,
         false => rows::rows(session, &Folds::kept(ui)).len(),

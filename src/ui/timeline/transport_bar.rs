@@ -38,8 +38,7 @@ pub(in crate::ui) fn slim(ui: &mut Ui, session: &Session, actions: &mut Actions)
     });
 }
 
-/// Shows the whole range of the timeline as a ruler, with the playhead; while nothing moves, how to
-/// begin.
+/// Shows the whole range of the timeline as a ruler, with the playhead, or a note if nothing moves.
 fn rail(ui: &mut Ui, session: &Session, rect: Rect, actions: &mut Actions) {
     let timeline = session.document().timeline;
     let scale = TimeScale::showing(rect.x_range(), timeline.start, timeline.end);
@@ -47,7 +46,7 @@ fn rail(ui: &mut Ui, session: &Session, rect: Rect, actions: &mut Actions) {
     let is_empty = nothing_to_play(session).is_some();
     ruler::ui(ui, session, scale, (rect, !is_empty), actions);
     if is_empty {
-        let note = "Nothing moves yet: press K here and at another time";
+        let note = "No animation yet: add keys in the timeline";
         ui.put(rect, egui::Label::new(RichText::new(note).weak()).selectable(false));
     }
     ruler::playhead(ui, session, scale, rect, rect.bottom());

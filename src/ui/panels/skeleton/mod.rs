@@ -38,13 +38,7 @@ pub(in crate::ui) fn noted(session: &Session) -> Option<Target> {
 }
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let has_targets = !session.rig().targets.is_empty();
-    let key = |ui: &mut Ui| {
-        if has_targets {
-            widgets::at_right(ui, |ui| ui.weak("Ticked: the figure follows"));
-        }
-    };
-    widgets::section_with(ui, "Targets", key, |ui| {
+    widgets::section(ui, "Targets", |ui| {
         targets::list(ui, session, actions);
         body_follows(ui, session, actions);
         balance::ui(ui, session, actions);

@@ -7,7 +7,7 @@ use egui::{
     Align2, Color32, Id, PointerButton, Rect, Response, Role, Sense, TextStyle, Ui, UiBuilder,
     Vec2b, WidgetInfo, pos2,
 };
-use egui_plot::{Line, LineStyle, PlotBounds, PlotPoints, Points};
+use egui_plot::{Line, LineStyle, MarkerShape, PlotBounds, PlotPoints, Points};
 
 use super::drag::{self, TimelineDrag};
 use super::rows::{self, TimelineAreas, take_keyboard};
@@ -213,7 +213,7 @@ fn times(scale: TimeScale) -> Vec<f64> {
 fn letters(ui: &Ui, scale: TimeScale, area: Rect, curves: &[ChannelCurve], scales: ValueScales) {
     // Least distance of a letter from another, and from a key and the ends of the lane, in points.
     const APART: f32 = 14.0;
-    const FROM_KEYS: f32 = mouse::HANDLE + APART;
+    const FROM_KEYS: f32 = 32.0;
     let font = TextStyle::Small.resolve(ui.style());
     for kind in scales.lanes().kinds() {
         let lane = scales.lanes().lane(kind, area);
@@ -265,7 +265,7 @@ fn plots(ui: &mut Ui, scale: TimeScale, area: Rect, curves: &[ChannelCurve], sca
                     let line = Line::new(&curve.name, points(&curve.line));
                     plot.line(line.color(curve.colour).width(1.75).style(curve.style));
                     let knots = Points::new(&curve.name, points(&curve.knots));
-                    plot.points(knots.color(curve.colour).radius(3.0));
+                    plot.points(knots.color(curve.colour).shape(MarkerShape::Diamond).radius(4.5));
                 }
             });
     }
