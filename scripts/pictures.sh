@@ -85,8 +85,9 @@ picture_of_example() {
             "$program" render "$frames/closer.json" --theme "$theme" --time "$time" --size 576x360 \
                 -o "$frames/$nth.png"
         done
-        montage "$frames"/[1-3]*.png -tile 6x4 -geometry 288x180+0+0 "${contrast[@]}" \
-            "${quality[@]}" "$example_pictures/$theme/$name.jpg"
+        montage "$frames"/[1-3]*.png -tile 6x4 -geometry 288x180+0+0 "$frames/all.png"
+        convert "$frames/all.png" "${contrast[@]}" "${quality[@]}" \
+            "$example_pictures/$theme/$name.jpg"
     done
     rm -r "$frames"
 }
@@ -115,9 +116,9 @@ come_closer() {
     local part=1 to=(0 0 0)
     case $1 in
         arm) part=0.62 to=(60 -20 10) ;;
-        two-targets) part=0.55 ;;
+        two-targets) part=0.65 ;;
         table) part=0.9 to=(0 -0.04 0) ;;
-        ten-joints) part=0.62 to=(-0.1 -0.05 0) ;;
+        ten-joints) part=0.7 to=(-0.1 -0.02 0) ;;
         jumping-chain) part=0.7 ;;
         keyframes) part=0.9 ;;
         pulled-apart | out-of-reach) part=0.62 ;;
@@ -127,10 +128,10 @@ come_closer() {
         snake) part=0.6 to=(0.55 0 0.75) ;;
         walk) part=0.68 to=(0 0 "$(awk "BEGIN { print 1.41 * ($3 - 1) }")") ;; # metres in a second
         human) part=0.88 ;;
-        wheel) part=0.8 to=(0 0.05 0) ;;
+        wheel) part=0.55 to=(0 0.3 0) ;;
         tadpoles) part=0.8 to=(-0.04 0 0.05) ;;
         reaching-down) part=0.8 ;;
-        looking-at-the-hand) part=0.95 to=(0 -0.06 0) ;;
+        looking-at-the-hand) part=0.65 to=(0 0.1 0) ;;
     esac
     python3 - "$2" "$part" "${to[@]}" <<'END'
 import json, sys
