@@ -92,13 +92,13 @@ picture_of_example() {
     rm -r "$frames"
 }
 
-# Reads a document and writes it without names and axes, which would be specks and stray lines.
+# Reads a document and writes it without names, axes and edges, which would be specks and stray lines.
 without_names() {
     python3 -c '
 import json, sys
 document = json.load(sys.stdin)
 shown = ["cursor", "skin", "trail", "paths", "grid_xz", "ground", "shadow"]
-document["overlays"] = [it for it in document.get("overlays") or shown if it not in ("labels", "axes")]
+document["overlays"] = [it for it in document.get("overlays") or shown if it not in ("labels", "axes", "wireframe")]
 json.dump(document, sys.stdout)'
 }
 
@@ -106,6 +106,7 @@ json.dump(document, sys.stdout)'
 first() {
     case $1 in
         looking-at-the-hand | reaching-down) echo 7 ;; # the figure just stands before
+        candy-wrapper) echo 18 ;; # twisted
         *) echo 0 ;;
     esac
 }
@@ -128,7 +129,7 @@ come_closer() {
         snake) part=0.6 to=(0.55 0 0.75) ;;
         walk) part=0.68 to=(0 0 "$(awk "BEGIN { print 1.41 * ($3 - 1) }")") ;; # metres in a second
         human) part=0.88 ;;
-        wheel) part=0.55 to=(0 0.3 0) ;;
+        wheel) part=0.62 to=(0 0.26 0.1) ;;
         tadpoles) part=0.8 to=(-0.04 0 0.05) ;;
         reaching-down) part=0.8 ;;
         looking-at-the-hand) part=0.65 to=(0 0.1 0) ;;

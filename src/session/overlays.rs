@@ -167,7 +167,7 @@ pub(in crate::session) fn write_onion_skins(
     /// Number of onion skins on each side of the playhead.
     const MOST: isize = 2;
     /// Number of frames from one skin to the next, so that those of a walk overlap a little.
-    const FRAMES: f64 = 8.0;
+    const FRAMES: f64 = 10.0;
     /// Opacity of a skin as a fraction of that of the one before it.
     const FAINTER: f32 = 0.6;
     /// Work of a pose above which only the nearest skins are shown: they are posed in every frame.

@@ -114,7 +114,7 @@ pub(in crate::ui) fn overlay(overlay: Overlay) -> (&'static str, &'static str) {
         Overlay::Paths => ("Paths", "Show the paths that heads follow"),
         Overlay::Cylinders => ("Cylinders", "Draw limbs as tapered cylinders instead of bones"),
         Overlay::Labels => ("Labels", "Show names and numbers in the view"),
-        Overlay::OnionSkins => ("Onion skins", "Show the rig 8 and 16 frames before and after"),
+        Overlay::OnionSkins => ("Onion skins", "Show the rig 10 and 20 frames before and after"),
         Overlay::InnerLimit => ("Inner limit", "Show the sphere that the hand cannot enter"),
         Overlay::OuterLimit => ("Outer limit", "Show the sphere that the hand cannot leave"),
         Overlay::ElbowCircle => ("Elbow circle", "Show all places where the elbow could be"),

@@ -165,7 +165,7 @@ fn an_onion_skin_of_a_figure_is_its_skin_or_else_its_bones_with_hips() {
         assert_eq!(skin.skin.is_some(), has_skin);
         let names = scene.labels.iter().map(|label| scene.text(label));
         let names: Vec<&str> = names.filter(|name| name.starts_with(['−', '+'])).collect();
-        assert_eq!(names, ["−16 frames", "−8", "+8", "+16 frames"]);
+        assert_eq!(names, ["−20 frames", "−10", "+10", "+20 frames"]);
         if has_skin {
             let [own, onion_skins @ ..] = &scene.skins[..] else { panic!("no skins") };
             assert_eq!(onion_skins.len(), overlays.onion_skins.len());

@@ -1,12 +1,14 @@
 //! The arm's figures and formulas: their numbers, and the lines that light up in the view.
 
+use core::f32::consts::PI;
+
 use crate::common::arm::{ArmEdit, ArmSession};
 use egui::accesskit::Role;
-use egui::{Pos2, Rect, vec2};
+use egui::{Pos2, Rect, Vec2, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::Vec3;
-use ik_arm::document::Overlay;
-use ik_arm::session::{LimbFigure, PanelTab, SelectAction};
+use ik_arm::document::{Camera, Overlay};
+use ik_arm::session::{LimbFigure, PanelTab, SelectAction, ViewAction};
 
 use crate::bench::{Bench, SMALL};
 use crate::common::all_cases;
@@ -110,21 +112,8 @@ fn the_value_at_the_end_of_a_row_lights_up_the_same_thing() {
 #[test]
 fn the_sides_of_the_triangle_light_up_the_limbs() {
     let mut bench = Bench::after([ArmEdit::SetHand(Vec3::new(360.0, 0.0, 0.0))]);
-    let panel = triangle(&bench);
-    let mut seen = Vec::new();
-    let (columns, rows) = if all_cases() { (40, 60) } else { (20, 30) };
-    for row in 0..rows {
-        for column in 0..columns {
-            let part = vec2(column as f32, row as f32) / vec2(columns as f32, rows as f32);
-            bench.move_to(panel.lerp_inside(part));
-            bench.frame([]);
-            if let Some(figure) = bench.session().selection().figure()
-                && !seen.contains(&figure)
-            {
-                seen.push(figure);
-            }
-        }
-    }
+    let grid = if all_cases() { (40, 60) } else { (20, 30) };
+    let seen: Vec<LimbFigure> = pointed(&mut bench, grid).into_iter().map(|it| it.0).collect();
     for figure in [
         LimbFigure::Upper,
         LimbFigure::Lower,
@@ -136,6 +125,42 @@ fn the_sides_of_the_triangle_light_up_the_limbs() {
     ] {
         assert!(seen.contains(&figure), "{figure:?} in {seen:?}");
     }
+}
+
+#[test]
+fn hand_and_elbow_are_on_the_sides_of_the_triangle_where_the_view_shows_them() {
+    for (yaw, is_right) in [(0.2, true), (0.2 + PI, false)] {
+        for (twist, is_above) in [(0.0, true), (PI, false)] {
+            let hand = Vec3::new(360.0, 0.0, 0.0);
+            let mut bench = Bench::after([ArmEdit::SetHand(hand), ArmEdit::SetTwist(twist)]);
+            bench.apply([ViewAction::SetCamera(Camera { yaw, ..Camera::default() })]);
+            let points = pointed(&mut bench, (10, 16));
+            let middle = |figure: LimbFigure| {
+                let own = points.iter().filter(|it| it.0 == figure).map(|it| it.1.to_vec2());
+                own.clone().fold(Vec2::ZERO, |sum, it| sum + it) / own.count() as f32
+            };
+            let [upper, lower] = [LimbFigure::Upper, LimbFigure::Lower].map(middle);
+            assert_eq!(lower.x > upper.x, is_right, "yaw {yaw}: {upper}, {lower}");
+            let base = middle(LimbFigure::Distance);
+            assert_eq!(upper.y < base.y, is_above, "twist {twist}: {upper}, {base}");
+        }
+    }
+}
+
+/// What lights up at places all over the triangle's drawing, in columns and rows.
+fn pointed(bench: &mut Bench, (columns, rows): (u8, u8)) -> Vec<(LimbFigure, Pos2)> {
+    let panel = triangle(bench);
+    let mut seen = Vec::new();
+    for row in 0..rows {
+        for column in 0..columns {
+            let part = vec2(column.into(), row.into()) / vec2(columns.into(), rows.into());
+            let at = panel.lerp_inside(part);
+            bench.move_to(at);
+            bench.frame([]);
+            seen.extend(bench.session().selection().figure().map(|figure| (figure, at)));
+        }
+    }
+    seen
 }
 
 /// The rectangle of the triangle's drawing.

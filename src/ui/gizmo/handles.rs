@@ -128,13 +128,13 @@ impl TranslateHandles {
     fn paint_arrow(&self, painter: &Painter, axis: usize, colour: Color32, letter: Color32) {
         const HEAD: f32 = 12.0;
         const DISC: f32 = 7.0;
-        const RIM: f32 = 1.0;
+        const RIM: f32 = 1.5;
         let arrow = self.arrows[axis];
         let direction = arrow.normalized();
         let tip = self.centre + arrow;
         let neck = tip - direction * HEAD;
         let start = self.centre + direction * FREE_RADIUS;
-        let rim = letter.gamma_multiply(0.75 * f32::from(colour.a()) / 255.0);
+        let rim = letter.gamma_multiply(f32::from(colour.a()) / 255.0);
         let aside = direction.rot90() * HEAD * 0.42;
         let head = vec![tip, neck + aside, neck - aside];
         painter.line_segment([start, neck], Stroke::new(2.5 + 2.0 * RIM, rim));

@@ -33,7 +33,7 @@ pub(in crate::ui) fn triangle(
 ) -> Option<LimbFigure> {
     let limb = titled_limb(ui, session, actions)?;
     let lit = &mut Lit::new(session);
-    triangle::ui(ui, limb, lit);
+    triangle::ui(ui, session, limb, lit);
     sentence(ui, session, limb);
     widgets::folded_section(ui, "Hierarchy", |ui| hierarchy(ui, session, limb, lit, actions));
     widgets::folded_section(ui, "Pointer", |ui| pointer::ui(ui, limb, lit));

@@ -12,7 +12,8 @@ use super::figures::{
     FigureLabels, FigureLine, FormulaRow, Lit, Place, arc, around, beside, degrees, formula,
     length, pair, point, table,
 };
-use crate::session::{LimbFigure, ShownLimb};
+use crate::rig::LimbPart;
+use crate::session::{LimbFigure, Session, ShownLimb};
 use crate::ui::style;
 use crate::ui::widgets::text::capitalized;
 use crate::words::LimbWords;
@@ -25,7 +26,7 @@ const ARC: f32 = 18.0;
 /// Half of the angle that each compass arc takes, in radians.
 const COMPASS: f32 = 0.2;
 
-pub(super) fn ui(ui: &mut Ui, limb: &ShownLimb, lit: &mut Lit) {
+pub(super) fn ui(ui: &mut Ui, session: &Session, limb: &ShownLimb, lit: &mut Lit) {
     let pose = limb.frames.pose();
     let LimbWords { base, middle, .. } = limb.words;
     let (rect, response) =
@@ -43,12 +44,12 @@ pub(super) fn ui(ui: &mut Ui, limb: &ShownLimb, lit: &mut Lit) {
     });
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 6.0, ui.visuals().extreme_bg_color);
-    let drawing = TriangleDrawing::new(ui, rect, limb);
+    let drawing = TriangleDrawing::new(ui, rect, session, limb);
     let lines = drawing.figure_lines();
     lit.paint(&painter, ui, &lines);
     let labels = drawing.paint(&painter, ui);
     lit.point(&response, &lines, &labels);
-    response.on_hover_text("The limb in its own plane, to scale");
+    response.on_hover_text("The limb in its own plane, to scale, on the side that the view shows");
 }
 
 /// Lengths of the Upper and the Lower limb, with their stretch.
@@ -57,9 +58,49 @@ fn sides(limb: &ShownLimb) -> [f32; 2] {
     [bones.upper(), bones.lower()].map(|length| length * limb.frames.pose().stretch)
 }
 
-/// Screen positions and colours of the triangle. `foot` is the point of the Pointer nearest to the
-/// elbow, and `angle` is θ_e in radians.
+/// How a triangle is turned over, so that hand and elbow are on the sides where the view shows them.
+#[derive(Clone, Copy)]
+struct Flip {
+    centre: Pos2,
+    /// 1 or −1 for each direction on screen.
+    signs: Vec2,
+}
+
+impl Flip {
+    fn as_seen(session: &Session, limb: &ShownLimb, centre: Pos2) -> Self {
+        let view = session.camera().projection(1.0);
+        let [shoulder, elbow, hand] =
+            [LimbPart::Root, LimbPart::Elbow, LimbPart::Hand].map(|part| limb.frames.origin(part));
+        let on_screen = |way: Vec3| vec2(way.dot(view.right), way.dot(view.up));
+        let [to_elbow, to_hand] = [elbow, hand].map(|end| on_screen(end - shoulder));
+        // The hand of an upright limb is at the right, so that a leg that walks does not turn over with
+        // each step.
+        let is_left = -to_hand.x > to_hand.y.abs();
+        let is_above = (to_hand.x * to_elbow.y - to_hand.y * to_elbow.x < 0.0) == is_left;
+        let sign = |is_positive: bool| if is_positive { 1.0 } else { -1.0 };
+        Self { centre, signs: vec2(sign(!is_left), sign(is_above)) }
+    }
+
+    fn point(self, at: Pos2) -> Pos2 {
+        self.centre + (at - self.centre) * self.signs
+    }
+
+    fn points(self, points: &[Pos2]) -> Vec<Pos2> {
+        points.iter().map(|at| self.point(*at)).collect()
+    }
+
+    fn places(self, places: &[Place]) -> Vec<Place> {
+        let flipped =
+            |place: &Place| Place { at: self.point(place.at), away: place.away * self.signs };
+        places.iter().map(flipped).collect()
+    }
+}
+
+/// Positions and colours of the triangle with the hand at the right and the elbow above, which `flip`
+/// brings to their places on screen. `foot` is the point of the Pointer nearest to the elbow, and
+/// `angle` is θ_e in radians.
 struct TriangleDrawing {
+    flip: Flip,
     shoulder: Pos2,
     elbow: Pos2,
     hand: Pos2,
@@ -74,7 +115,7 @@ struct TriangleDrawing {
 }
 
 impl TriangleDrawing {
-    fn new(ui: &Ui, rect: Rect, limb: &ShownLimb) -> Self {
+    fn new(ui: &Ui, rect: Rect, session: &Session, limb: &ShownLimb) -> Self {
         let pose = limb.frames.pose();
         let (left, right) = (pose.along.min(0.0), pose.distance.max(pose.along));
         let inside = rect.shrink2(MARGINS);
@@ -88,6 +129,7 @@ impl TriangleDrawing {
         };
         let palette = style::palette(ui);
         Self {
+            flip: Flip::as_seen(session, limb, inside.center()),
             shoulder: place(0.0, 0.0),
             elbow: place(pose.along, pose.out),
             hand: place(pose.distance, 0.0),
@@ -115,7 +157,7 @@ impl TriangleDrawing {
             (LimbFigure::ShoulderAngle, arc(shoulder, ARC, 0.0, -self.angle)),
             (LimbFigure::ElbowAngle, self.elbow_arc()),
         ]
-        .map(|(figure, points)| FigureLine { figure, points })
+        .map(|(figure, points)| FigureLine { figure, points: self.flip.points(&points) })
     }
 
     /// The direction from the elbow to the shoulder, and the turn from there to the hand, in
@@ -141,15 +183,17 @@ impl TriangleDrawing {
     /// Paints lines and labels, and returns where the labels are.
     fn paint(&self, painter: &Painter, ui: &Ui) -> Vec<(Rect, LimbFigure)> {
         let thin = Stroke::new(1.0, self.weak);
-        painter.line_segment([self.shoulder, self.hand], Stroke::new(1.5, self.text));
+        let [shoulder, elbow, hand, foot] =
+            [self.shoulder, self.elbow, self.hand, self.foot].map(|at| self.flip.point(at));
+        painter.line_segment([shoulder, hand], Stroke::new(1.5, self.text));
         if !self.is_flat() {
-            painter.extend(Shape::dashed_line(&[self.elbow, self.foot], thin, 3.0, 3.0));
+            painter.extend(Shape::dashed_line(&[elbow, foot], thin, 3.0, 3.0));
             self.paint_compass(painter);
         }
         self.paint_angles(painter);
-        painter.line_segment([self.shoulder, self.elbow], Stroke::new(4.0, self.upper));
-        painter.line_segment([self.elbow, self.hand], Stroke::new(4.0, self.lower));
-        for joint in [self.shoulder, self.elbow, self.hand] {
+        painter.line_segment([shoulder, elbow], Stroke::new(4.0, self.upper));
+        painter.line_segment([elbow, hand], Stroke::new(4.0, self.lower));
+        for joint in [shoulder, elbow, hand] {
             painter.circle(joint, 4.5, ui.visuals().extreme_bg_color, Stroke::new(2.0, self.text));
         }
         self.write(painter, ui)
@@ -158,6 +202,7 @@ impl TriangleDrawing {
     /// Paints the circles around shoulder and hand where they cross: the elbow.
     fn paint_compass(&self, painter: &Painter) {
         for (points, colour) in self.compass().into_iter().zip([self.upper, self.lower]) {
+            let points = self.flip.points(&points);
             painter.add(Shape::line(points, Stroke::new(1.0, colour.gamma_multiply(0.6))));
         }
     }
@@ -172,20 +217,34 @@ impl TriangleDrawing {
 
     fn paint_angles(&self, painter: &Painter) {
         let stroke = Stroke::new(1.5, self.accent);
-        painter.add(Shape::line(arc(self.shoulder, ARC, 0.0, -self.angle), stroke));
-        painter.add(Shape::line(self.elbow_arc(), stroke));
+        let at_shoulder = arc(self.shoulder, ARC, 0.0, -self.angle);
+        for arc in [at_shoulder, self.elbow_arc()] {
+            painter.add(Shape::line(self.flip.points(&arc), stroke));
+        }
     }
 
     /// Writes each label at the first of its positions that is clear of lines and other labels.
     /// Labels without such a position are left out, except those of the sides.
     fn write(&self, painter: &Painter, ui: &Ui) -> Vec<(Rect, LimbFigure)> {
-        let mut labels = FigureLabels::new(painter, ui, self.lines());
+        let lines = self.lines().map(|ends| ends.map(|at| self.flip.point(at)));
+        let mut labels = FigureLabels::new(painter, ui, lines.collect());
+        let seen = |places: &[Place]| self.flip.places(places);
         let (shoulder, elbow, hand, foot) = (self.shoulder, self.elbow, self.hand, self.foot);
-        labels.write_always("Upper d_1", self.upper, LimbFigure::Upper, &beside(shoulder, elbow));
-        labels.write_always("Lower d_2", self.lower, LimbFigure::Lower, &beside(elbow, hand));
+        labels.write_always(
+            "Upper d_1",
+            self.upper,
+            LimbFigure::Upper,
+            &seen(&beside(shoulder, elbow)),
+        );
+        labels.write_always(
+            "Lower d_2",
+            self.lower,
+            LimbFigure::Lower,
+            &seen(&beside(elbow, hand)),
+        );
         // Near the hand, since the angle at the shoulder is written beneath the shoulder.
         let along = beside(hand, shoulder + 0.28 * (hand - shoulder));
-        labels.write_always("Distance D", self.text, LimbFigure::Distance, &along);
+        labels.write_always("Distance D", self.text, LimbFigure::Distance, &seen(&along));
         let angle = self.angle.min(TAU / 4.0);
         let in_angle = [38.0, 46.0, 56.0].into_iter().flat_map(|radius| {
             [0.5, 0.65, 0.8, 0.35].map(|part| Place {
@@ -199,7 +258,7 @@ impl TriangleDrawing {
         let beside_it = Place { at: shoulder + left * 10.0, away: left };
         let in_angle: Vec<_> = in_angle.chain(beneath).chain([beside_it]).collect();
         let at_base = format!("{} θ_e", capitalized(self.words.base));
-        labels.write(&at_base, self.accent, LimbFigure::ShoulderAngle, &in_angle);
+        labels.write(&at_base, self.accent, LimbFigure::ShoulderAngle, &seen(&in_angle));
         let (start, turn) = self.at_elbow();
         let at_elbow = around(elbow, ARC, start + 0.5 * turn);
         let beside_it =
@@ -216,21 +275,21 @@ impl TriangleDrawing {
             false => others.chain(above).collect(),
         };
         let at_middle = format!("{} φ", capitalized(self.words.middle));
-        labels.write(&at_middle, self.accent, LimbFigure::ElbowAngle, &at_elbow);
+        labels.write(&at_middle, self.accent, LimbFigure::ElbowAngle, &seen(&at_elbow));
         if self.is_flat() {
             return labels.written();
         }
         let heights = [beside(elbow, foot), beside(foot, elbow)].concat();
-        labels.write("Height o_e", self.weak, LimbFigure::Out, &heights);
+        labels.write("Height o_e", self.weak, LimbFigure::Out, &seen(&heights));
         let lengths = [0.5, 0.35, 0.65].map(|part| foot + (shoulder - foot) * part);
         let lengths =
             [4.0, 18.0].map(|down| lengths.map(|at| Place { at: at + below * down, away: below }));
-        labels.write("Along h_e", self.weak, LimbFigure::Along, &lengths.concat());
+        labels.write("Along h_e", self.weak, LimbFigure::Along, &seen(&lengths.concat()));
         labels.written()
     }
 
     /// The lines that labels keep clear of.
-    fn lines(&self) -> Vec<[Pos2; 2]> {
+    fn lines(&self) -> impl Iterator<Item = [Pos2; 2]> {
         let Self { shoulder, elbow, hand, foot, .. } = *self;
         let mut lines = vec![[shoulder, elbow], [elbow, hand], [shoulder, hand]];
         if !self.is_flat() {
@@ -238,7 +297,7 @@ impl TriangleDrawing {
             lines.extend(self.compass().map(|points| [points[0], points[points.len() - 1]]));
         }
         lines.extend(self.elbow_arc().windows(2).map(|ends| [ends[0], ends[1]]));
-        lines
+        lines.into_iter()
     }
 }
 

@@ -162,6 +162,8 @@ fn look(ui: &Ui, channel: Channel, index: usize) -> (Vec<Color32>, LineStyle) {
     };
     let colours = match channel {
         _ if has_axes => palette.axes.to_vec(),
+        // As its slider.
+        Channel::TargetTwist(_) => vec![palette.accent],
         _ => vec![palette.series(index)],
     };
     (colours.into_iter().map(style::colour).collect(), style)
