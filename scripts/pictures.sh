@@ -118,7 +118,7 @@ come_closer() {
     case $1 in
         arm) part=0.62 to=(60 -20 10) ;;
         two-targets) part=0.65 ;;
-        table) part=0.9 to=(0 -0.04 0) ;;
+        table) part=0.72 to=(0.05 0.14 0) ;;
         ten-joints) part=0.7 to=(-0.1 -0.02 0) ;;
         jumping-chain) part=0.7 ;;
         keyframes) part=0.9 ;;

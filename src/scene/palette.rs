@@ -104,12 +104,12 @@ impl Palette {
 
     /// See-through colour of an onion skin: the fainter, the farther it is from the playhead.
     pub(super) fn onion_skin(&self, skin: &OnionSkin) -> Colour {
-        const OPACITY: f32 = 0.28;
+        const OPACITY: f32 = 0.34;
         // Parts of the sky in the grey of the past, and of the joints' grey in the accent of the future,
         // which would draw more attention than the figure.
         let plain = match skin.past {
             true => self.guide.mixed(self.sky_bottom, 0.1),
-            false => self.accent.mixed(self.joint, 0.35),
+            false => self.accent.mixed(self.joint, 0.45),
         };
         plain.with_opacity(OPACITY * skin.opacity)
     }

@@ -143,7 +143,7 @@ impl TranslateHandles {
         painter.add(Shape::convex_polygon(head, colour, Stroke::NONE));
         // On a disc, so that the letter can be read before a limb.
         let beyond = tip + direction * (DISC + 3.0);
-        painter.circle_filled(beyond, DISC, colour);
+        painter.circle(beyond, DISC, colour, Stroke::new(RIM, rim));
         let font = FontId::proportional(11.0);
         painter.text(beyond, Align2::CENTER_CENTER, NAMES[axis], font, letter);
     }

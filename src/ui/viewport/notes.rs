@@ -128,7 +128,7 @@ pub(super) fn follow_mouse(ui: &Ui, session: &Session, viewport: Rect, actions: 
 /// Says what the colours of the singularity globe mean.
 pub(super) fn globe_colours(ui: &Ui, session: &Session, viewport: Rect) {
     // Greatest width in points, and part of the width of a narrow view.
-    const WIDTH: f32 = 216.0;
+    const WIDTH: f32 = 232.0;
     const PART: f32 = 0.38;
     let is_shown = session.shown().display.shows(Overlay::SingularityGlobe);
     let Some(limb) = session.limb().filter(|_| is_shown && session.crowd().is_none()) else {
@@ -138,7 +138,7 @@ pub(super) fn globe_colours(ui: &Ui, session: &Session, viewport: Rect) {
     area.fixed_pos(viewport.min + vec2(MARGIN, MARGIN)).show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).show(ui, |ui| {
             ui.set_width(WIDTH.min(PART * viewport.width()));
-            panels::globe_legend(ui, limb.words);
+            panels::globe_legend(ui, limb.words.middle);
         });
     });
 }

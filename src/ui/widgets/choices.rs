@@ -2,8 +2,8 @@
 //! boxes.
 
 use egui::{
-    Align, Button, Checkbox, Color32, ComboBox, Layout, Rect, Response, RichText, Role, Stroke, Ui,
-    WidgetInfo, vec2,
+    Align, Button, Checkbox, Color32, ComboBox, Layout, Rect, Response, RichText, Role, Stroke,
+    TextStyle, Ui, WidgetInfo, vec2,
 };
 
 use crate::document::Overlay;
@@ -21,7 +21,15 @@ pub(in crate::ui) fn tabs<T: PartialEq + Copy>(
     tabs: &[Alternative<'_, T>],
 ) -> Option<T> {
     let mut pressed = None;
-    let gap = if ui.available_width() > ROOMY { 16.0 } else { 0.0 };
+    let font = TextStyle::Button.resolve(ui.style());
+    let width = |name: &str| {
+        let colour = Color32::PLACEHOLDER;
+        ui.painter().layout_no_wrap(name.to_owned(), font.clone(), colour).size().x
+    };
+    let names: f32 = tabs.iter().map(|(_, name, _)| width(name) + 2.0 * PADDING).sum();
+    let gaps = tabs.len().saturating_sub(1).max(1) as f32;
+    // Widths of tabs are whole points.
+    let gap = ((ui.available_width() - names) / gaps - 1.0).floor().clamp(0.0, GAP);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(gap, 0.0);
         ui.spacing_mut().button_padding = vec2(PADDING, 5.0);
@@ -48,8 +56,8 @@ pub(in crate::ui) fn tabs<T: PartialEq + Copy>(
 
 /// Space beside the name of a tab, in points: six tabs have room in a row of the page.
 const PADDING: f32 = 2.75;
-/// Width of a place, in points, from which tabs stand farther apart.
-const ROOMY: f32 = 480.0;
+/// Greatest space between two tabs, in points.
+const GAP: f32 = 16.0;
 
 fn underline(ui: &Ui, tab: Rect) {
     let y = tab.bottom() - 1.0;
