@@ -128,8 +128,8 @@ pub(super) fn follow_mouse(ui: &Ui, session: &Session, viewport: Rect, actions: 
 /// Says what the colours of the singularity globe mean.
 pub(super) fn globe_colours(ui: &Ui, session: &Session, viewport: Rect) {
     // Greatest width in points, and part of the width of a narrow view.
-    const WIDTH: f32 = 232.0;
-    const PART: f32 = 0.38;
+    const WIDTH: f32 = 200.0;
+    const PART: f32 = 0.4;
     let is_shown = session.shown().display.shows(Overlay::SingularityGlobe);
     let Some(limb) = session.limb().filter(|_| is_shown && session.crowd().is_none()) else {
         return;
