@@ -188,7 +188,7 @@ impl Palette {
 }
 
 fn ramp(hex: [u32; Palette::GAINS]) -> [Colour; Palette::GAINS] {
-    const OPACITY: [f32; Palette::GAINS] = [0.06, 0.14, 0.26, 0.38, 0.48];
+    const OPACITY: [f32; Palette::GAINS] = [0.06, 0.11, 0.17, 0.24, 0.31];
     std::array::from_fn(|step| Colour::rgb(hex[step]).with_opacity(OPACITY[step]))
 }
 
