@@ -193,7 +193,7 @@ impl Scene {
                 (globe.centre + direction * globe.radius, MARK_RADIUS * globe.radius);
             self.balls.push(Ball { centre, radius, colour: ball });
             let label = Label::new(centre, radius, LabelSide::Above, text);
-            self.add_label(label, format_args!("elbow spins here"));
+            self.add_label(label, format_args!("Elbow spins here"));
         }
         self.label_levels(globe);
     }

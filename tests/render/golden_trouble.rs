@@ -256,7 +256,7 @@ fn every_singular_direction_is_marked_on_the_globe() {
         assert_eq!(marked.globe, Some(globe));
         let places: Vec<_> = directions.iter().map(|way| globe.centre + way * 100.0).collect();
         let balls: Vec<_> = marked.balls[before.0..].iter().map(|ball| ball.centre).collect();
-        let is_name = |label: &&Label| marked.text(label).starts_with("elbow spins");
+        let is_name = |label: &&Label| marked.text(label).starts_with("Elbow spins");
         let labels = marked.labels[before.1..].iter();
         let (names, numbers): (Vec<&Label>, Vec<&Label>) = labels.partition(is_name);
         let names: Vec<_> = names.iter().map(|label| label.at).collect();

@@ -91,7 +91,7 @@ fn add_pointer_and_limits(scene: &mut Scene, limb: &LimbFrames, display: Display
             scene.add_guide_solid(base, tip, width, 0.0, colour);
         }
         let label = Label::new(tip, radius, LabelSide::Below, palette.text);
-        let name = if has_ball { "limb's direction" } else { "Pointer" };
+        let name = if has_ball { "Limb's direction" } else { "Pointer" };
         scene.add_label(label, format_args!("{name}"));
     }
     for (overlay, part, radius) in [

@@ -138,7 +138,7 @@ pub(super) fn globe_colours(ui: &Ui, session: &Session, viewport: Rect) {
     area.fixed_pos(viewport.min + vec2(MARGIN, MARGIN)).show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).show(ui, |ui| {
             ui.set_width(WIDTH.min(PART * viewport.width()));
-            panels::globe_legend(ui, limb.words.middle);
+            panels::globe_legend(ui, limb.words);
         });
     });
 }

@@ -28,10 +28,10 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, limb: &ShownLimb, action
     });
 }
 
-/// Shows the colour bar of the singularity globe, on a logarithmic scale of the gain. `middle` is
-/// the word for the middle joint of the limb.
-pub(in crate::ui) fn globe_legend(ui: &mut Ui, middle: &str) {
-    ui.label(format!("{} speed by direction", capitalized(middle)));
+/// Shows the colour bar of the singularity globe, on a logarithmic scale of the gain.
+pub(in crate::ui) fn globe_legend(ui: &mut Ui, words: LimbWords) {
+    ui.label(format!("{} speed by direction", capitalized(words.middle)));
+    ui.weak(format!("1×: as fast as the {}", words.end));
     let summary = "Gain: elbow degrees per degree of the Pointer, 0 to 8 and more";
     let (palette, end) = (style::palette(ui), Palette::MAX_GAIN.ln_1p());
     // As clear as the globe, which is clearer in the middle than at its rim.
