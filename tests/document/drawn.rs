@@ -282,7 +282,7 @@ fn a_trail_has_a_ball_at_each_key_and_what_is_far_is_fainter() {
         let (heads, tubes): (Vec<&Solid>, Vec<&Solid>) =
             short().partition(|it| it.shape.tip_radius == 0.0);
         assert_eq!(heads.len(), keys.len() - 1, "an arrowhead between two keys");
-        assert_eq!(tubes.len() + 1, timeline.frames() as usize, "a tube between two frames");
+        assert_eq!(tubes.len() + 1, timeline.frames(), "a tube between two frames");
         let view = scene.camera.projection(1.0);
         let mut seen: Vec<(f32, u8)> = tubes
             .iter()
