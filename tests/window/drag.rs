@@ -4,15 +4,18 @@ use image::RgbImage;
 use crate::open;
 use crate::screen::changed;
 
-/// Number of bright pixels of the ring around a target.
+/// Number of pixels of the ring around a target, which is bright, or violet for the limb of the page.
 fn ring(screen: &RgbImage, at: Pos2) -> usize {
     let is_near = |x: u32, y: u32| {
         let distance = Pos2::new(x as f32 + 0.5, y as f32 + 0.5).distance(at);
         (8.0..=10.0).contains(&distance)
     };
-    let is_bright = |colour: &image::Rgb<u8>| colour.0.iter().all(|channel| *channel > 180);
+    let is_of_ring = |colour: &image::Rgb<u8>| {
+        let [red, green, blue] = colour.0;
+        red.min(green).min(blue) > 180 || blue > 200 && blue > green.saturating_add(50)
+    };
     let pixels = screen.enumerate_pixels();
-    pixels.filter(|(x, y, colour)| is_near(*x, *y) && is_bright(colour)).count()
+    pixels.filter(|(x, y, colour)| is_near(*x, *y) && is_of_ring(colour)).count()
 }
 
 /// Distances in points from the middle of the hips and of the head beyond their outlines: inside,
