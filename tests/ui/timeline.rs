@@ -629,17 +629,17 @@ fn a_box_over_the_folded_row_of_all_keys_selects_the_keys_of_all_joints_in_it() 
     let mut bench = Bench::with_timeline(LARGE);
     bench.apply([open_example("walk")]);
     let [first, last] =
-        ["Keys at 0.50 s", "Keys at 0.62 s"].map(|name| bench.rect(Role::Button, name).center());
+        ["Keys at 0.50 s", "Keys at 0.75 s"].map(|name| bench.rect(Role::Button, name).center());
     let from = first + vec2(-10.0, 30.0);
     bench.drag(PointerButton::Primary, from, last + vec2(10.0, 0.0));
     bench.release(PointerButton::Primary);
     bench.settle();
     let tracks = bench.session().document().keys.tracks();
-    let inside = |time: f64| (0.5 - 1e-6..0.63).contains(&time);
+    let inside = |time: f64| (0.5 - 1e-6..0.76).contains(&time);
     let expected: usize = tracks
         .map(|(_, track)| track.knots().iter().filter(|knot| inside(knot.time)).count())
         .sum();
-    assert!(expected > 30, "{expected}");
+    assert!(expected > 40, "{expected}");
     assert_eq!(bench.session().selection().keys().len(), expected);
 }
 

@@ -230,7 +230,7 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, children: &mut V
 /// Distance of a name from the highest tip of an onion skin, as a fraction of the figure's reach.
 const ABOVE_HEAD: f32 = 0.07;
 
-/// Says above an onion skin which frame it is; above the last one in its direction with the unit.
+/// Says above an onion skin which frame it is, with the unit if it is the last one in its direction.
 fn add_name_of(scene: &mut Scene, onion_skin: &OnionSkin, is_last: bool, clearance: f32) {
     let tips = onion_skin.pose.ids().map(|joint| onion_skin.pose.tip(joint));
     let Some(highest) = tips.max_by(|one, other| one.y.total_cmp(&other.y)) else { return };
